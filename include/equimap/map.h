@@ -1,0 +1,72 @@
+/* The answer: where every input vertex goes, how good that is, how it was found. In input numbering, in the slabs of the
+   soup it belongs to. */
+#ifndef EQUIMAP_MAP_H
+#define EQUIMAP_MAP_H
+
+#include <equimap/soup.h>
+
+typedef struct {
+  PetscReal mean, sd, min, max, p25, p50, p75, p95;
+} EqmStatistics;
+
+/* Distortion as the papers measure it (unweighted over cells unless said otherwise). */
+typedef struct {
+  PetscReal energy;          /* normalised authalic / isovolumetric energy A sum (w/W) (r - 1)^2 */
+  PetscReal image_measure;   /* A */
+  PetscReal mesh_measure;    /* W, density included */
+  EqmStatistics ratio;       /* r = (a/w) (W/A) */
+  EqmStatistics ratio_error; /* |r - 1| */
+  EqmStatistics angle_error; /* degrees per corner; p50 is the median; triangles only */
+  PetscReal quasiconformal_mean, quasiconformal_max; /* ratio of singular values, >= 1; triangles only */
+  PetscInt64 folds;
+} EqmDistortion;
+
+/* One row per iteration. Row 0 is the start. */
+typedef struct {
+  PetscInt iteration;
+  PetscReal energy;        /* E of the map (conformal: the Dirichlet energy) */
+  PetscReal sd;            /* standard deviation of the ratio */
+  PetscInt64 folds;
+  PetscReal step;          /* accepted step length, 0 in row 0 */
+  PetscReal gradient_norm; /* of the function that the method minimises; -1 where the method has none */
+  EqmWork work;            /* so far */
+  PetscReal seconds;       /* since the program's start */
+} EqmHistoryRow;
+
+typedef struct _p_EqmMap *EqmMap;
+struct _p_EqmMap {
+  EqmSoup soup;           /* the input mesh; referenced, not owned */
+  PetscInt dim;           /* coordinates per vertex: 2 or 3 */
+  PetscReal *coordinates; /* dim * slab of vertices */
+  PetscReal *cell_ratio;  /* r per cell of the slab */
+  PetscReal *vertex_ratio; /* mean of r over the cells around a vertex, weighted by w; per vertex of the slab */
+  EqmDistortion distortion;
+  PetscReal energy_initial, energy_final;
+  PetscInt iterations, num_history;
+  EqmHistoryRow *history; /* num_history rows, the same on every rank */
+  EqmWork work;
+  EqmStatus status;
+  char message[EQM_MESSAGE_MAX]; /* how the run ended, in plain words */
+  char command[64], method[64];
+  PetscInt ranks, threads;
+  PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS], total_seconds;
+  PetscInt64 memory_max_per_rank, memory_total, num_boundary_vertices;
+};
+
+PETSC_EXTERN PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map);
+PETSC_EXTERN PetscErrorCode EqmMapDestroy(EqmMap *map);
+
+/* Write a result: every name in the comma-separated `files`, format by suffix; .h5 holds everything and gets an .xmf
+   beside it. tmp -> fsync -> rename; a file that was there survives a failure. Errors: EQM_ERR_USAGE (suffix),
+   EQM_ERR_IO. Collective. */
+PETSC_EXTERN PetscErrorCode EqmMapWrite(EqmMap map, const char *files);
+/* Look before a long run whether `files` can be written: suffixes known, directories there and writable. Collective. */
+PETSC_EXTERN PetscErrorCode EqmMapCheckWritable(MPI_Comm comm, const char *files);
+/* Read the coordinates of a map of the mesh `soup`: .h5 (/map/coordinates), or any mesh format whose vertices are the
+   images (with z = 0 everywhere: a planar map). Errors: EQM_ERR_IO, EQM_ERR_MESH (vertex count differs). Collective. */
+PETSC_EXTERN PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *map);
+/* The summary as JSON (INTERFACE.md's keys) and the history as CSV. Collective; rank 0 writes. */
+PETSC_EXTERN PetscErrorCode EqmMapWriteSummary(EqmMap map, const char *file);
+PETSC_EXTERN PetscErrorCode EqmMapWriteHistory(EqmMap map, const char *file);
+
+#endif

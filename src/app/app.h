@@ -1,0 +1,29 @@
+/* The program's commands: one file each. */
+#ifndef EQM_APP_H
+#define EQM_APP_H
+
+#include <equimap.h>
+
+/* What the command line says beside options: `equimap COMMAND MESH [MORE] -options`. */
+typedef struct {
+  const char *command;
+  int num_arguments;
+  const char *argument[8];
+  PetscBool help; /* COMMAND --help: print the options and return */
+} EqmCommandLine;
+
+/* A command: runs collectively on PETSC_COMM_WORLD; sets the status that becomes the exit code when it returns 0. */
+typedef PetscErrorCode (*EqmCommand)(const EqmCommandLine *line, EqmStatus *status);
+
+PETSC_INTERN PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status); /* disk, square, ... */
+PETSC_INTERN PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status);
+PETSC_INTERN PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status);
+PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status);
+PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
+PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
+
+/* Fail with EQM_ERR_USAGE if an option was given that nobody asked for. Call after all options have been read, before
+   the work starts. Collective. */
+PETSC_INTERN PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line);
+
+#endif
