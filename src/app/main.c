@@ -1,0 +1,129 @@
+/* equimap COMMAND ARGUMENTS -options: find the command, hand over, turn its end into an exit code. */
+#include "app.h"
+#include <omp.h>
+#include <string.h>
+
+typedef struct {
+  const char *name;
+  EqmCommand run;
+  const char *usage, *purpose;
+} CommandRow;
+
+static const CommandRow commands[] = {
+    {"disk", EqmCommandMap, "MESH -o OUT", "area-preserving map of a disk-type surface to the unit disk"},
+    {"square", EqmCommandMap, "MESH -o OUT", "the same to the unit square"},
+    {"check", EqmCommandCheck, "MESH", "diagnose a mesh: what it is, what is wrong, what each command would say"},
+    {"measure", EqmCommandMeasure, "MESH MAP", "distortion and folds of any map, also one made elsewhere"},
+    {"convert", EqmCommandConvert, "IN OUT", "between mesh formats"},
+    {"generate", EqmCommandGenerate, "SHAPE -n N -o OUT", "test surfaces and solids of any size"},
+    {"report", EqmCommandReport, "RESULT -o FILE", "pictures and plots of a result"},
+};
+enum { NUM_COMMANDS = sizeof(commands) / sizeof(commands[0]) };
+
+/* Options without a value: what follows them on the command line is an argument, not their value. */
+static const char *const flags[] = {"-quiet", "-help", "-repair", "-log_view", "-options_left", "-unique", "-version"};
+
+static PetscBool TakesNoValue(const char *option)
+{
+  for (size_t k = 0; k < sizeof(flags) / sizeof(flags[0]); k++) {
+    if (!strcmp(option, flags[k])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+static PetscBool IsOption(const char *word)
+{
+  return (PetscBool)(word[0] == '-' && word[1] != '\0' && !strchr("0123456789.", word[1]));
+}
+
+/* Split the command line into command, arguments and what is left for PETSc. `argv` keeps its first entry and the
+   options. */
+static void ParseCommandLine(int *argc, char **argv, EqmCommandLine *line, PetscBool *version)
+{
+  int kept = 1;
+
+  for (int k = 1; k < *argc; k++) {
+    const PetscBool is_value = (PetscBool)(k > 1 && IsOption(argv[k - 1]) && !TakesNoValue(argv[k - 1]));
+    if (!strcmp(argv[k], "--help") || !strcmp(argv[k], "-help") || !strcmp(argv[k], "-h")) {
+      line->help = PETSC_TRUE;
+    } else if (!strcmp(argv[k], "--version") || !strcmp(argv[k], "-version")) {
+      *version = PETSC_TRUE;
+    } else if (IsOption(argv[k]) || is_value) {
+      argv[kept++] = argv[k];
+    } else if (!line->command) {
+      line->command = argv[k];
+    } else if (line->num_arguments < (int)(sizeof(line->argument) / sizeof(line->argument[0]))) {
+      line->argument[line->num_arguments++] = argv[k];
+    }
+  }
+  argv[kept] = NULL;
+  *argc = kept;
+}
+
+static PetscErrorCode PrintUsage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equimap %s: area-, volume- and angle-preserving maps of triangle and tetrahedral meshes\n\n"
+                                          "usage: equimap COMMAND ARGUMENTS [-options]      (alone or under mpirun -n N)\n\n",
+                        EqmVersion()));
+  for (int k = 0; k < NUM_COMMANDS; k++) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage, commands[k].purpose));
+  }
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\nequimap COMMAND --help lists the options of a command. To begin with:\n"
+                                          "  equimap generate hills -n 20000 -o hills.obj\n"
+                                          "  equimap disk hills.obj -o hills.h5 && equimap report hills.h5 -o hills.png\n"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetThreads(void)
+{
+  PetscInt threads = omp_get_max_threads();
+  PetscBool given;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-threads", &threads, &given));
+  if (given && threads < 1) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-threads %" PetscInt_FMT ": give 1 or more", threads);
+  if (given) omp_set_num_threads((int)threads);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Run(const EqmCommandLine *line, EqmStatus *status)
+{
+  PetscFunctionBegin;
+  if (!line->command) {
+    PetscCall(PrintUsage());
+    *status = line->help ? EQM_STATUS_CONVERGED : EQM_STATUS_USAGE;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(SetThreads());
+  for (int k = 0; k < NUM_COMMANDS; k++) {
+    if (strcmp(line->command, commands[k].name)) continue;
+    if (line->help) {
+      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equimap %s %s\n  %s\n", commands[k].name, commands[k].usage, commands[k].purpose));
+      PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
+    }
+    PetscCall(commands[k].run(line, status));
+    PetscFunctionReturn(0);
+  }
+  EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "there is no command '%s'; equimap --help lists the commands", line->command);
+}
+
+int main(int argc, char **argv)
+{
+  EqmCommandLine line = {0};
+  EqmStatus status = EQM_STATUS_CONVERGED;
+  PetscBool version = PETSC_FALSE;
+  PetscErrorCode error;
+
+  ParseCommandLine(&argc, argv, &line, &version);
+  if (EqmInitialize(&argc, &argv)) return EQM_STATUS_INTERNAL;
+  if (version) {
+    error = PetscPrintf(PETSC_COMM_WORLD, "equimap %s (commit %s, PETSc %d.%d.%d)\n", EqmVersion(), EqmCommit(),
+                        PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
+  } else {
+    error = Run(&line, &status);
+  }
+  if (error) status = EqmStatusOfError(error);
+  if (EqmFinalize()) return EQM_STATUS_INTERNAL;
+  return (int)status;
+}

@@ -1,0 +1,137 @@
+/* The run's book-keeping: seconds per phase and per kind of work, counted work, peak memory. */
+#include <equimap/base.h>
+#include <sys/resource.h>
+
+struct _p_EqmLedger {
+  MPI_Comm comm;
+  EqmWork work;
+  PetscLogStage stage[EQM_NUM_PHASES];
+  PetscLogEvent event[EQM_NUM_EVENTS];
+  PetscLogDouble created, phase_begun[EQM_NUM_PHASES], event_begun[EQM_NUM_EVENTS];
+  PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS];
+};
+
+static const char *const phase_names[EQM_NUM_PHASES] = {"Read", "Diagnose", "Distribute", "Start", "Minimise", "Measure", "Write"};
+static const char *const event_names[EQM_NUM_EVENTS] = {"EqmPartition", "EqmAssemble", "EqmFactor", "EqmSolve", "EqmKernel"};
+
+/* Stages and events are PETSc's and outlive a ledger: find those that an earlier ledger registered. */
+static PetscErrorCode RegisterLogging(EqmLedger ledger)
+{
+  PetscClassId class_id;
+
+  PetscFunctionBegin;
+  for (int p = 0; p < EQM_NUM_PHASES; p++) {
+    PetscCall(PetscLogStageGetId(phase_names[p], &ledger->stage[p]));
+    if (ledger->stage[p] < 0) PetscCall(PetscLogStageRegister(phase_names[p], &ledger->stage[p]));
+  }
+  PetscCall(PetscLogEventGetId(event_names[0], &ledger->event[0]));
+  if (ledger->event[0] < 0) PetscCall(PetscClassIdRegister("equimap", &class_id));
+  for (int e = 0; e < EQM_NUM_EVENTS; e++) {
+    PetscCall(PetscLogEventGetId(event_names[e], &ledger->event[e]));
+    if (ledger->event[e] < 0) PetscCall(PetscLogEventRegister(event_names[e], class_id, &ledger->event[e]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Open a ledger; its clock starts now. Collective. */
+PetscErrorCode EqmLedgerCreate(MPI_Comm comm, EqmLedger *out)
+{
+  EqmLedger ledger;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&ledger));
+  ledger->comm = comm;
+  PetscCall(PetscTime(&ledger->created));
+  PetscCall(RegisterLogging(ledger));
+  *out = ledger;
+  PetscFunctionReturn(0);
+}
+
+/* Collective. */
+PetscErrorCode EqmLedgerDestroy(EqmLedger *ledger)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(*ledger));
+  PetscFunctionReturn(0);
+}
+
+/* A phase begins; phases do not nest. Collective. */
+PetscErrorCode EqmPhaseBegin(EqmLedger ledger, EqmPhase phase)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogStagePush(ledger->stage[phase]));
+  PetscCall(PetscTime(&ledger->phase_begun[phase]));
+  PetscFunctionReturn(0);
+}
+
+/* A phase ends. Collective. */
+PetscErrorCode EqmPhaseEnd(EqmLedger ledger, EqmPhase phase)
+{
+  PetscLogDouble now;
+
+  PetscFunctionBegin;
+  PetscCall(PetscTime(&now));
+  ledger->phase_seconds[phase] += now - ledger->phase_begun[phase];
+  PetscCall(PetscLogStagePop());
+  PetscFunctionReturn(0);
+}
+
+/* Work of a kind begins; kinds do not nest in themselves. Not collective. */
+PetscErrorCode EqmEventBegin(EqmLedger ledger, EqmEvent event)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ledger->event[event], 0, 0, 0, 0));
+  PetscCall(PetscTime(&ledger->event_begun[event]));
+  PetscFunctionReturn(0);
+}
+
+/* Work of a kind ends. Not collective. */
+PetscErrorCode EqmEventEnd(EqmLedger ledger, EqmEvent event)
+{
+  PetscLogDouble now;
+
+  PetscFunctionBegin;
+  PetscCall(PetscTime(&now));
+  ledger->event_seconds[event] += now - ledger->event_begun[event];
+  PetscCall(PetscLogEventEnd(ledger->event[event], 0, 0, 0, 0));
+  PetscFunctionReturn(0);
+}
+
+/* The counters, to read and to add to. Not collective. */
+PetscErrorCode EqmLedgerGetWork(EqmLedger ledger, EqmWork **work)
+{
+  PetscFunctionBegin;
+  *work = &ledger->work;
+  PetscFunctionReturn(0);
+}
+
+/* Seconds so far: per phase, per kind of work, in all; the largest over the ranks. NULL for what is not wanted.
+   Collective. */
+PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PHASES], PetscReal events[EQM_NUM_EVENTS],
+                                   PetscReal *total)
+{
+  PetscLogDouble now;
+  PetscReal mine;
+
+  PetscFunctionBegin;
+  PetscCall(PetscTime(&now));
+  mine = now - ledger->created;
+  if (phases) PetscCall(MPIU_Allreduce(ledger->phase_seconds, phases, EQM_NUM_PHASES, MPIU_REAL, MPIU_MAX, ledger->comm));
+  if (events) PetscCall(MPIU_Allreduce(ledger->event_seconds, events, EQM_NUM_EVENTS, MPIU_REAL, MPIU_MAX, ledger->comm));
+  if (total) PetscCall(MPIU_Allreduce(&mine, total, 1, MPIU_REAL, MPIU_MAX, ledger->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Peak resident memory in bytes: of the largest rank, and summed over the ranks. Collective. */
+PetscErrorCode EqmGetPeakMemory(MPI_Comm comm, PetscInt64 *max_per_rank, PetscInt64 *total)
+{
+  struct rusage usage;
+  PetscInt64 mine;
+
+  PetscFunctionBegin;
+  PetscCheck(getrusage(RUSAGE_SELF, &usage) == 0, PETSC_COMM_SELF, PETSC_ERR_SYS, "getrusage failed");
+  mine = (PetscInt64)usage.ru_maxrss * 1024; /* Linux counts in KiB */
+  PetscCall(MPIU_Allreduce(&mine, max_per_rank, 1, MPIU_INT64, MPI_MAX, comm));
+  PetscCall(MPIU_Allreduce(&mine, total, 1, MPIU_INT64, MPI_SUM, comm));
+  PetscFunctionReturn(0);
+}

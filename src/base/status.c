@@ -1,0 +1,102 @@
+/* Status codes, the error handler of the house, agreement on failures. */
+#include <equimap/base.h>
+#include <stdarg.h>
+#include <string.h>
+
+#ifndef EQM_VERSION
+#error "EQM_VERSION comes from the build system"
+#endif
+
+/* The program's version, "major.minor.patch". Not collective. */
+const char *EqmVersion(void)
+{
+  return EQM_VERSION;
+}
+
+/* The git commit that the library was built from, or "unknown". Not collective. */
+const char *EqmCommit(void)
+{
+  return EQM_COMMIT;
+}
+
+/* The name of a status as summaries and result files carry it. Not collective. */
+const char *EqmStatusName(EqmStatus status)
+{
+  switch (status) {
+  case EQM_STATUS_CONVERGED: return "converged";
+  case EQM_STATUS_INTERNAL: return "internal error";
+  case EQM_STATUS_USAGE: return "wrong usage";
+  case EQM_STATUS_MESH: return "mesh cannot be mapped";
+  case EQM_STATUS_NOT_CONVERGED: return "not converged";
+  case EQM_STATUS_FOLDS: return "folds remain";
+  case EQM_STATUS_IO: return "input or output failed";
+  case EQM_STATUS_CHECKPOINT: return "checkpoint refused";
+  case EQM_STATUS_STOPPED: return "stopped on request";
+  }
+  return "unknown";
+}
+
+/* The status, and so the exit code, behind an error code. Not collective. */
+EqmStatus EqmStatusOfError(PetscErrorCode error)
+{
+  if (error == 0) return EQM_STATUS_CONVERGED;
+  if (error == EQM_ERR_USAGE) return EQM_STATUS_USAGE;
+  if (error == EQM_ERR_MESH) return EQM_STATUS_MESH;
+  if (error == EQM_ERR_IO) return EQM_STATUS_IO;
+  if (error == EQM_ERR_CHECKPOINT) return EQM_STATUS_CHECKPOINT;
+  return EQM_STATUS_INTERNAL;
+}
+
+/* One rank failed: all learn of it and fail alike, instead of one leaving and the others waiting. */
+PetscErrorCode EqmAgree(MPI_Comm comm, PetscErrorCode code, const char *message)
+{
+  PetscMPIInt rank, size, failed;
+  int mine, shared = (int)code;
+  char text[EQM_MESSAGE_MAX] = "";
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  mine = code ? rank : size;
+  PetscCallMPI(MPI_Allreduce(&mine, &failed, 1, MPI_INT, MPI_MIN, comm));
+  if (failed == size) PetscFunctionReturn(0);
+  if (rank == failed) PetscCall(PetscStrncpy(text, message ? message : "no reason given", sizeof(text)));
+  PetscCallMPI(MPI_Bcast(text, (PetscMPIInt)sizeof(text), MPI_CHAR, failed, comm));
+  PetscCallMPI(MPI_Bcast(&shared, 1, MPI_INT, failed, comm));
+  EqmFail(comm, (PetscErrorCode)shared, "%s", text);
+}
+
+/* A user's mistake deserves a sentence, once, not a stack of calls from every rank; a bug keeps PETSc's full trace and
+   ends all ranks, for the others may be waiting. */
+static PetscErrorCode HandleError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                  PetscErrorType type, const char *message, void *context)
+{
+  if (EqmStatusOfError(code) != EQM_STATUS_INTERNAL) {
+    PetscMPIInt rank = 0;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    if (type == PETSC_ERROR_INITIAL && rank == 0) fprintf(stderr, "equimap: %s\n", message);
+    return code;
+  }
+  PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, context);
+  MPI_Abort(PETSC_COMM_WORLD, EQM_STATUS_INTERNAL);
+  return code;
+}
+
+/* Start PETSc and the house's error handler. A program that has its own PETSc set-up need not call this: without the
+   handler, errors come back with PETSc's usual traces. Collective on MPI_COMM_WORLD. */
+PetscErrorCode EqmInitialize(int *argc, char ***argv)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscInitialize(argc, argv, NULL, NULL));
+  PetscCall(PetscPushErrorHandler(HandleError, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* End what EqmInitialize began. Collective on MPI_COMM_WORLD. */
+PetscErrorCode EqmFinalize(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(PetscFinalize());
+  return 0;
+}
