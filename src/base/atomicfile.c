@@ -1,0 +1,202 @@
+#define _GNU_SOURCE
+#include "atomicfile.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static PetscErrorCode RejectWrite(const char *path, int error_number, char *error, size_t length)
+{
+  snprintf(error, length, "cannot write %s: %s", path, strerror(error_number ? error_number : EIO));
+  return EQM_ERR_IO;
+}
+
+/* Follow links, so that a link to a result stays a link; a file that is not there yet keeps its name. */
+static int ResolvePath(const char *path, EqmAtomicFile *file)
+{
+  char *real = realpath(path, NULL);
+  const char *name = real ? real : path;
+  int error_number = strlen(name) < sizeof(file->path) ? 0 : ENAMETOOLONG;
+
+  if (!error_number) strcpy(file->path, name);
+  free(real);
+  return error_number;
+}
+
+/* Create the temporary file, under a name that nobody has; `descriptor` is open for writing. */
+static int CreateTemporary(EqmAtomicFile *file, int *descriptor)
+{
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    int used = snprintf(file->temporary, sizeof(file->temporary), "%s.%ld-%d.tmp", file->path, (long)getpid(), attempt);
+
+    if (used < 0 || (size_t)used >= sizeof(file->temporary)) return ENAMETOOLONG;
+    *descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (*descriptor >= 0) return 0;
+    if (errno != EEXIST) return errno;
+  }
+  return EEXIST;
+}
+
+static int OpenDescriptor(const char *path, EqmAtomicFile *file, int *descriptor)
+{
+  struct stat status;
+  PetscBool exists;
+  int error_number = ResolvePath(path, file);
+
+  if (error_number) return error_number;
+  exists = stat(file->path, &status) == 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (exists && S_ISDIR(status.st_mode)) return EISDIR;
+  if (exists && !S_ISREG(status.st_mode)) { /* a device or a pipe cannot be renamed over */
+    strcpy(file->temporary, file->path);
+    *descriptor = open(file->path, O_WRONLY | O_CLOEXEC);
+    return *descriptor >= 0 ? 0 : errno;
+  }
+  if (exists && access(file->path, W_OK)) return errno; /* rename would replace a write-protected file */
+  error_number = CreateTemporary(file, descriptor);
+  if (error_number) return error_number;
+  if (exists && fchmod(*descriptor, status.st_mode & 07777)) errno = 0; /* keep the permissions where that is allowed */
+  return 0;
+}
+
+/* EqmAtomicBegin - reserve a temporary file beside `path` for somebody else to fill.
+
+   Not collective. `file->temporary` exists and is empty afterwards; EqmAtomicCommit or EqmAtomicAbort must follow.
+   Errors: EQM_ERR_IO (returned quietly, reason in `error`). */
+PetscErrorCode EqmAtomicBegin(const char *path, EqmAtomicFile *file, char *error, size_t length)
+{
+  int descriptor = -1, error_number;
+
+  memset(file, 0, sizeof(*file));
+  error_number = OpenDescriptor(path, file, &descriptor);
+  if (!error_number && close(descriptor)) error_number = errno;
+  if (error_number) return RejectWrite(path, error_number, error, length);
+  return 0;
+}
+
+/* EqmAtomicOpen - open a temporary file beside `path` for EqmAtomicWrite, EqmAtomicPrint and EqmAtomicPrintReals.
+
+   Not collective. EqmAtomicCommit or EqmAtomicAbort must follow a success. Devices and pipes are written in place.
+   Errors: EQM_ERR_IO (returned quietly, reason in `error`). */
+PetscErrorCode EqmAtomicOpen(const char *path, EqmAtomicFile *file, char *error, size_t length)
+{
+  int descriptor = -1, error_number;
+
+  memset(file, 0, sizeof(*file));
+  error_number = OpenDescriptor(path, file, &descriptor);
+  if (!error_number) {
+    file->stream = fdopen(descriptor, "wb");
+    if (!file->stream) {
+      error_number = errno;
+      close(descriptor);
+      EqmAtomicAbort(file);
+    }
+  }
+  if (error_number) return RejectWrite(path, error_number, error, length);
+  return 0;
+}
+
+/* EqmAtomicWrite - append bytes. Not collective. A failure is remembered and reported by EqmAtomicCommit. */
+void EqmAtomicWrite(EqmAtomicFile *file, const void *bytes, size_t count)
+{
+  if (file->error_number || !count) return;
+  errno = 0;
+  if (fwrite(bytes, 1, count, file->stream) != count) file->error_number = errno ? errno : EIO;
+}
+
+/* EqmAtomicPrint - append text like fprintf. Not collective. A failure is remembered and reported by EqmAtomicCommit.
+   Real numbers belong to EqmAtomicPrintReals: printf writes the locale's decimal comma. */
+void EqmAtomicPrint(EqmAtomicFile *file, const char *format, ...)
+{
+  va_list arguments;
+
+  if (file->error_number) return;
+  errno = 0;
+  va_start(arguments, format);
+  if (vfprintf(file->stream, format, arguments) < 0) file->error_number = errno ? errno : EIO;
+  va_end(arguments);
+}
+
+/* EqmAtomicPrintReals - append `count` numbers with a separator between them, with the digits that bring back the same
+   bits (%.17g), and with a decimal point in every locale. Not collective. */
+void EqmAtomicPrintReals(EqmAtomicFile *file, PetscInt count, const PetscReal *values, char separator)
+{
+  for (PetscInt i = 0; i < count; ++i) {
+    char text[40];
+    int used = snprintf(text, sizeof(text), "%.17g", (double)values[i]);
+
+    for (int k = 0; k < used; ++k) {
+      if (text[k] == ',') text[k] = '.';
+    }
+    if (i + 1 < count) text[used++] = separator;
+    EqmAtomicWrite(file, text, (size_t)used);
+  }
+}
+
+/* Bring a closed file's or a directory's contents to the disk. */
+static int SyncPath(const char *path, int flags)
+{
+  int error_number = 0, descriptor = open(path, flags | O_CLOEXEC);
+
+  if (descriptor < 0) return errno;
+  if (fsync(descriptor) && errno != EINVAL && errno != ENOTSUP) error_number = errno; /* some file systems cannot */
+  if (close(descriptor) && !error_number) error_number = errno;
+  return error_number;
+}
+
+static int SyncDirectoryOf(const char *path)
+{
+  char copy[PETSC_MAX_PATH_LEN];
+
+  strcpy(copy, path);
+  return SyncPath(dirname(copy), O_RDONLY | O_DIRECTORY);
+}
+
+/* Close the stream; the first error of its whole life counts. */
+static int CloseStream(EqmAtomicFile *file)
+{
+  int error_number = file->error_number;
+
+  errno = 0;
+  if (fflush(file->stream) && !error_number) error_number = errno ? errno : EIO;
+  if (ferror(file->stream) && !error_number) error_number = EIO;
+  if (fclose(file->stream) && !error_number) error_number = errno ? errno : EIO;
+  file->stream = NULL;
+  return error_number;
+}
+
+/* EqmAtomicCommit - flush the temporary file to the disk, give it its name, flush the directory.
+
+   Not collective. After a failure the temporary file is gone and a file that had the name before is untouched.
+   Errors: EQM_ERR_IO (returned quietly, reason in `error`): the first write that failed, a full disk, a failed rename.
+ */
+PetscErrorCode EqmAtomicCommit(EqmAtomicFile *file, char *error, size_t length)
+{
+  PetscBool in_place = strcmp(file->path, file->temporary) ? PETSC_FALSE : PETSC_TRUE;
+  int error_number = file->stream ? CloseStream(file) : file->error_number;
+
+  if (!error_number && !in_place) error_number = SyncPath(file->temporary, O_RDONLY);
+  if (!error_number && !in_place && rename(file->temporary, file->path)) error_number = errno;
+  if (error_number) {
+    EqmAtomicAbort(file);
+    return RejectWrite(file->path, error_number, error, length);
+  }
+  if (!in_place) error_number = SyncDirectoryOf(file->path);
+  if (error_number) return RejectWrite(file->path, error_number, error, length);
+  return 0;
+}
+
+/* EqmAtomicAbort - forget the file: the temporary file is removed, one that had the name before is untouched.
+   Not collective; harmless when repeated. */
+void EqmAtomicAbort(EqmAtomicFile *file)
+{
+  if (file->stream) fclose(file->stream);
+  file->stream = NULL;
+  if (file->temporary[0] && strcmp(file->path, file->temporary)) unlink(file->temporary);
+  file->temporary[0] = '\0';
+}
