@@ -43,6 +43,19 @@ static int CreateTemporary(EqmAtomicFile *file, int *descriptor)
   return EEXIST;
 }
 
+/* A device or a pipe cannot be renamed over; neither can the file that our own output goes to (/dev/stdout). */
+static PetscBool IsWrittenInPlace(const struct stat *status)
+{
+  struct stat output;
+
+  if (!S_ISREG(status->st_mode)) return PETSC_TRUE;
+  for (int descriptor = STDOUT_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (!fstat(descriptor, &output) && output.st_dev == status->st_dev && output.st_ino == status->st_ino)
+      return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 static int OpenDescriptor(const char *path, EqmAtomicFile *file, int *descriptor)
 {
   struct stat status;
@@ -52,9 +65,9 @@ static int OpenDescriptor(const char *path, EqmAtomicFile *file, int *descriptor
   if (error_number) return error_number;
   exists = stat(file->path, &status) == 0 ? PETSC_TRUE : PETSC_FALSE;
   if (exists && S_ISDIR(status.st_mode)) return EISDIR;
-  if (exists && !S_ISREG(status.st_mode)) { /* a device or a pipe cannot be renamed over */
+  if (exists && IsWrittenInPlace(&status)) {
     strcpy(file->temporary, file->path);
-    *descriptor = open(file->path, O_WRONLY | O_CLOEXEC);
+    *descriptor = open(file->path, O_WRONLY | O_APPEND | O_CLOEXEC);
     return *descriptor >= 0 ? 0 : errno;
   }
   if (exists && access(file->path, W_OK)) return errno; /* rename would replace a write-protected file */
