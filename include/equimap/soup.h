@@ -54,6 +54,8 @@ PETSC_EXTERN PetscErrorCode EqmSoupReadDensity(EqmSoup soup, const char *file);
 
 /* Test shapes of about n vertices; `shape` is one of the names that EqmGenerateShapes lists. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupGenerate(MPI_Comm comm, const char *shape, PetscInt n, PetscInt seed, EqmSoup *soup);
+/* Names and descriptions of those shapes; the arrays are the caller's to PetscFree. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmGenerateShapes(const char *const **names, const char *const **descriptions, int *n);
 /* Split every triangle into four (every tetrahedron into eight) `times` times. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupRefine(EqmSoup *soup, PetscInt times);
 

@@ -1,0 +1,48 @@
+/* Test shapes: a lattice (what is connected to what) and a placement (where it lies in space). */
+#ifndef EQM_GENERATE_H
+#define EQM_GENERATE_H
+
+#include <equimap/soup.h>
+
+/* A lattice of a certain size. Which of the numbers mean something depends on the lattice. */
+typedef struct {
+  PetscInt cell_size;
+  PetscInt num_vertices, num_cells;
+  PetscInt size[3]; /* vertices (solids: cells) per direction, or the frequency of a subdivision in size[0] */
+  PetscInt seed;
+} EqmLatticePlan;
+
+/* Connectivity of a shape, every vertex and cell computable on its own, so that each rank makes its slab alone. */
+typedef struct {
+  /* Choose the size nearest to n vertices. */
+  void (*plan)(PetscInt n, EqmLatticePlan *plan);
+  /* Parameters of a vertex, jittered: (u, v) in the unit square, (x, y) in the unit disk, a direction in space, or a
+     point of the cube [-1, 1]^3. */
+  void (*parameter)(const EqmLatticePlan *plan, PetscInt vertex, PetscReal parameter[3]);
+  void (*cell)(const EqmLatticePlan *plan, PetscInt cell, PetscInt vertices[]);
+} EqmLattice;
+
+/* From a lattice's parameters to a point in space. */
+typedef void (*EqmPlacement)(const EqmLatticePlan *plan, const PetscReal parameter[3], PetscReal position[3]);
+
+PETSC_INTERN const EqmLattice EqmLatticeRectangle, EqmLatticeAnnulus, EqmLatticeMoebius, EqmLatticeTorus;
+PETSC_INTERN const EqmLattice EqmLatticeHexagon, EqmLatticeIcosahedron;
+PETSC_INTERN const EqmLattice EqmLatticeCube;
+
+PETSC_INTERN void EqmPlaceCap(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlacePatch(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceHills(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceAnnulus(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceMoebius(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceTorus(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceSphere(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceHead(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceStarfish(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceCube(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceBall(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceBlob(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+
+/* A number in [0, 1) that depends on its arguments alone. */
+PETSC_INTERN PetscReal EqmHashUniform(PetscInt seed, PetscInt index, PetscInt channel);
+
+#endif
