@@ -1,0 +1,233 @@
+/* Open, create, commit and abandon HDF5 files; what HDF5 says when it fails. */
+#include "h5.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct {
+  char *text;
+  size_t length;
+} Reason;
+
+static herr_t TakeDescription(unsigned n, const H5E_error2_t *entry, void *context)
+{
+  Reason *reason = (Reason *)context;
+
+  (void)n;
+  if (!entry->desc || !entry->desc[0]) return 0;
+  (void)snprintf(reason->text, reason->length, "%s", entry->desc);
+  return 1; /* the innermost cause is enough */
+}
+
+/* All ranks fail with EQM_ERR_IO if one of them is not fine; the message names the file, `what` and HDF5's innermost
+   cause. Collective. */
+PetscErrorCode EqmH5Agree(EqmH5 h5, PetscBool fine, const char *what)
+{
+  char reason[512] = "", message[EQM_MESSAGE_MAX] = "";
+  Reason context = {reason, sizeof(reason)};
+
+  PetscFunctionBegin;
+  if (!fine) {
+    (void)H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, TakeDescription, &context);
+    (void)snprintf(message, sizeof(message), "cannot %s '%.1000s': %s%s%s%s", h5->writing ? "write" : "read", h5->name,
+                   what, reason[0] ? " (HDF5: " : "", reason, reason[0] ? ")" : "");
+  }
+  PetscCall(EqmAgree(h5->comm, fine ? 0 : EQM_ERR_IO, message));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, EqmH5 *out)
+{
+  EqmH5 h5;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&h5));
+  h5->comm = comm;
+  h5->file = h5->transfer = H5I_INVALID_HID;
+  h5->writing = writing;
+  PetscCallMPI(MPI_Comm_rank(comm, &h5->rank));
+  PetscCall(PetscStrncpy(h5->name, name, sizeof(h5->name)));
+  (void)H5Eget_auto2(H5E_DEFAULT, &h5->printer, &h5->printer_data);
+  (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  *out = h5;
+  PetscFunctionReturn(0);
+}
+
+/* Close the handles of a file, whatever state it is in; a file that was not committed leaves nothing behind. */
+static PetscBool End(EqmH5 *handle)
+{
+  EqmH5 h5 = *handle;
+  PetscBool fine = PETSC_TRUE;
+
+  if (!h5) return PETSC_TRUE;
+  if (h5->transfer >= 0 && H5Pclose(h5->transfer) < 0) fine = PETSC_FALSE;
+  if (h5->file >= 0 && H5Fclose(h5->file) < 0) fine = PETSC_FALSE;
+  if (h5->writing && h5->rank == 0) EqmAtomicAbort(&h5->atomic);
+  (void)H5Eset_auto2(H5E_DEFAULT, h5->printer, h5->printer_data);
+  (void)PetscFree(*handle);
+  return fine;
+}
+
+static hid_t ParallelAccess(MPI_Comm comm)
+{
+  hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+
+  if (access >= 0 &&
+      (H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL) < 0 || H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) < 0)) {
+    (void)H5Pclose(access);
+    return H5I_INVALID_HID;
+  }
+  return access;
+}
+
+static PetscErrorCode OpenHandles(EqmH5 h5)
+{
+  hid_t access;
+  PetscBool fine;
+
+  PetscFunctionBegin;
+  access = ParallelAccess(h5->comm);
+  PetscCall(EqmH5Agree(h5, (PetscBool)(access >= 0), "there is no parallel access"));
+  h5->file = h5->writing ? H5Fcreate(h5->atomic.temporary, H5F_ACC_TRUNC, H5P_DEFAULT, access)
+                         : H5Fopen(h5->name, H5F_ACC_RDONLY, access);
+  (void)H5Pclose(access);
+  h5->transfer = H5Pcreate(H5P_DATASET_XFER);
+  fine = (PetscBool)(h5->file >= 0 && h5->transfer >= 0 && H5Pset_dxpl_mpio(h5->transfer, H5FD_MPIO_COLLECTIVE) >= 0);
+  PetscCall(EqmH5Agree(h5, fine, h5->writing ? "it cannot be made" : "it is not an HDF5 file, or a damaged one"));
+  PetscFunctionReturn(0);
+}
+
+/* Rank 0 makes the temporary with plain system calls: their errors are clearer than those that come through MPI. */
+static PetscErrorCode MakeTemporary(EqmH5 h5)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode error = 0;
+
+  PetscFunctionBegin;
+  if (h5->rank == 0) {
+    error = EqmAtomicBegin(h5->name, &h5->atomic, message, sizeof(message));
+    if (!error && !strcmp(h5->atomic.path, h5->atomic.temporary)) {
+      error = EQM_ERR_IO;
+      (void)snprintf(message, sizeof(message), "cannot write '%.1000s': an HDF5 file must be a regular file", h5->name);
+    }
+  }
+  PetscCall(EqmAgree(h5->comm, error, message));
+  PetscCallMPI(MPI_Bcast(h5->atomic.temporary, (PetscMPIInt)sizeof(h5->atomic.temporary), MPI_CHAR, 0, h5->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Likewise for files to read. */
+static PetscErrorCode CheckReadable(EqmH5 h5)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  FILE *stream;
+  int failed = 0;
+
+  PetscFunctionBegin;
+  if (h5->rank == 0) {
+    stream = fopen(h5->name, "rb");
+    failed = stream ? 0 : errno;
+    if (stream) (void)fclose(stream);
+    if (failed) (void)snprintf(message, sizeof(message), "cannot read '%.1000s': %s", h5->name, strerror(failed));
+  }
+  PetscCall(EqmAgree(h5->comm, failed ? EQM_ERR_IO : 0, message));
+  PetscFunctionReturn(0);
+}
+
+/* Start a new file that will replace `name` when it is committed; EqmH5Close without a commit drops it. Errors:
+   EQM_ERR_IO, and *h5 is NULL. Collective. */
+PetscErrorCode EqmH5Create(MPI_Comm comm, const char *name, EqmH5 *h5)
+{
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(Begin(comm, name, PETSC_TRUE, h5));
+  error = MakeTemporary(*h5);
+  if (!error) error = OpenHandles(*h5);
+  if (error) (void)End(h5);
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}
+
+/* Open a file to read. Errors: EQM_ERR_IO (missing, unreadable, not HDF5), and *h5 is NULL. Collective. */
+PetscErrorCode EqmH5Open(MPI_Comm comm, const char *name, EqmH5 *h5)
+{
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(Begin(comm, name, PETSC_FALSE, h5));
+  error = CheckReadable(*h5);
+  if (!error) error = OpenHandles(*h5);
+  if (error) (void)End(h5);
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}
+
+/* Close a file; a new one that was not committed is removed. Collective. */
+PetscErrorCode EqmH5Close(EqmH5 *h5)
+{
+  PetscFunctionBegin;
+  (void)End(h5);
+  PetscFunctionReturn(0);
+}
+
+/* Reserve the bytes of the temporary; 0 or the error number. */
+static int ReserveBytes(const char *temporary, off_t size)
+{
+  const int descriptor = open(temporary, O_WRONLY);
+  int failed;
+
+  if (descriptor < 0) return errno;
+  failed = posix_fallocate(descriptor, 0, size);
+  if (failed == EINVAL || failed == EOPNOTSUPP)
+    failed = 0; /* a file system that cannot reserve: the writes will tell */
+  if (close(descriptor) != 0 && !failed) failed = errno;
+  return failed;
+}
+
+/* Take the disk space of all declared arrays and attributes before the first array is written: a full disk is then one
+   clear error on rank 0 and not a failure of some rank in the middle of a collective write. Errors: EQM_ERR_IO.
+   Collective. */
+PetscErrorCode EqmH5Reserve(EqmH5 h5)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  hsize_t size = 0;
+  PetscBool fine;
+  int failed = 0;
+
+  PetscFunctionBegin;
+  fine = (PetscBool)(H5Fflush(h5->file, H5F_SCOPE_GLOBAL) >= 0 && H5Fget_filesize(h5->file, &size) >= 0);
+  PetscCall(EqmH5Agree(h5, fine, "its arrays cannot be laid out"));
+  if (h5->rank == 0) failed = ReserveBytes(h5->atomic.temporary, (off_t)size);
+  if (failed) {
+    (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s (it takes %.1f MB)", h5->name,
+                   strerror(failed), (double)size / 1e6);
+  }
+  PetscCall(EqmAgree(h5->comm, failed ? EQM_ERR_IO : 0, message));
+  PetscFunctionReturn(0);
+}
+
+/* Mark a new file complete, close it, force it to the disk and give it its name. Errors: EQM_ERR_IO; the file that was
+   there before then stays. Collective. */
+PetscErrorCode EqmH5Commit(EqmH5 *handle)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  EqmH5 h5 = *handle;
+  PetscErrorCode error = 0;
+  PetscBool fine;
+
+  PetscFunctionBegin;
+  fine = (PetscBool)(H5Fflush(h5->file, H5F_SCOPE_GLOBAL) >= 0);
+  PetscCall(EqmH5Agree(h5, fine, "it cannot be flushed"));
+  PetscCall(EqmH5PutInteger(h5, "complete", 1));
+  fine = (PetscBool)(H5Fclose(h5->file) >= 0);
+  h5->file = H5I_INVALID_HID;
+  PetscCall(EqmH5Agree(h5, fine, "it cannot be closed"));
+  if (h5->rank == 0) error = EqmAtomicCommit(&h5->atomic, message, sizeof(message));
+  PetscCall(EqmAgree(h5->comm, error, message));
+  h5->writing = PETSC_FALSE;
+  (void)End(handle);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,179 @@
+/* The answer as an object; a map read from a file. */
+#include "store.h"
+#include "h5.h"
+#include <petscsf.h>
+#include <string.h>
+
+/* An empty answer for a soup that must outlive it: coordinates and ratios zero, nothing run yet. Errors: none of its
+   own. Collective. */
+PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map)
+{
+  const PetscInt num_vertices = soup->vertex_end - soup->vertex_start;
+  const PetscInt num_cells = soup->cell_end - soup->cell_start;
+  PetscMPIInt size;
+  EqmMap new_map;
+
+  PetscFunctionBegin;
+  PetscCheck(dim == 2 || dim == 3, soup->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "a map has 2 or 3 coordinates, not %" PetscInt_FMT, dim);
+  PetscCall(PetscNew(&new_map));
+  new_map->soup = soup;
+  new_map->dim = dim;
+  PetscCall(PetscCalloc1(dim * num_vertices, &new_map->coordinates));
+  PetscCall(PetscCalloc1(num_cells, &new_map->cell_ratio));
+  PetscCall(PetscCalloc1(num_vertices, &new_map->vertex_ratio));
+  PetscCallMPI(MPI_Comm_size(soup->comm, &size));
+  new_map->ranks = size;
+  new_map->threads = 1;
+  *map = new_map;
+  PetscFunctionReturn(0);
+}
+
+/* Collective. */
+PetscErrorCode EqmMapDestroy(EqmMap *map)
+{
+  PetscFunctionBegin;
+  if (!*map) PetscFunctionReturn(0);
+  PetscCall(PetscFree((*map)->coordinates));
+  PetscCall(PetscFree((*map)->cell_ratio));
+  PetscCall(PetscFree((*map)->vertex_ratio));
+  PetscCall(PetscFree((*map)->history));
+  PetscCall(PetscFree(*map));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckCount(EqmSoup soup, PetscInt64 count, const char *file)
+{
+  PetscFunctionBegin;
+  if (count != soup->num_vertices) {
+    EqmFail(soup->comm, EQM_ERR_MESH,
+            "'%s' has %" PetscInt64_FMT " vertices, but the mesh '%s' has %" PetscInt_FMT
+            ": they do not belong together",
+            file, count, soup->file, soup->num_vertices);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The shape of /map/coordinates in an open result file. */
+static PetscErrorCode CheckResult(EqmH5 h5, EqmSoup soup, PetscInt64 *dim)
+{
+  PetscInt64 complete, count;
+  PetscBool has;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5HasDataset(h5, "/map/coordinates", &has));
+  if (!has)
+    EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': it holds no /map/coordinates, so it is not a result", h5->name);
+  PetscCall(EqmH5GetInteger(h5, "complete", 1, &complete)); /* a map made elsewhere has no such mark */
+  if (!complete) EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': it was not written to its end", h5->name);
+  PetscCall(EqmH5GetShape(h5, "/map/coordinates", &count, dim));
+  if (*dim != 2 && *dim != 3) {
+    EqmFail(h5->comm, EQM_ERR_IO,
+            "cannot read '%s': /map/coordinates has %" PetscInt64_FMT " columns instead of 2 or 3", h5->name, *dim);
+  }
+  PetscCall(CheckCount(soup, count, h5->name));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FillFromResult(EqmH5 h5, EqmSoup soup, EqmMap *map)
+{
+  EqmSlab slab = {soup->num_vertices, soup->vertex_start, soup->vertex_end - soup->vertex_start, 0};
+  PetscInt64 dim;
+
+  PetscFunctionBegin;
+  PetscCall(CheckResult(h5, soup, &dim));
+  PetscCall(EqmMapCreate(soup, (PetscInt)dim, map));
+  slab.width = (PetscInt)dim;
+  PetscCall(EqmH5ReadReals(h5, "/map/coordinates", slab, (*map)->coordinates));
+  PetscCall(EqmH5GetText(h5, "command", "", (*map)->command, sizeof((*map)->command)));
+  PetscCall(EqmH5GetText(h5, "method", "", (*map)->method, sizeof((*map)->method)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadResult(EqmSoup soup, const char *file, EqmMap *map)
+{
+  PetscErrorCode error;
+  EqmH5 h5;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5Open(soup->comm, file, &h5));
+  error = FillFromResult(h5, soup, map);
+  PetscCall(EqmH5Close(&h5));
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}
+
+/* Move three reals per vertex from the slabs of one soup to the slabs of another with the same vertices. */
+static PetscErrorCode Redeal(EqmSoup from, EqmSoup to, PetscReal *values)
+{
+  const PetscInt count = to->vertex_end - to->vertex_start;
+  PetscLayout layout;
+  PetscInt *wanted;
+  PetscSF sf;
+  MPI_Datatype point;
+
+  PetscFunctionBegin;
+  PetscCall(
+      PetscLayoutCreateFromSizes(from->comm, from->vertex_end - from->vertex_start, from->num_vertices, 1, &layout));
+  PetscCall(PetscMalloc1(count, &wanted));
+  for (PetscInt i = 0; i < count; i++) wanted[i] = to->vertex_start + i;
+  PetscCall(PetscSFCreate(from->comm, &sf));
+  PetscCall(PetscSFSetGraphLayout(sf, layout, count, NULL, PETSC_COPY_VALUES, wanted));
+  PetscCall(PetscFree(wanted));
+  PetscCallMPI(MPI_Type_contiguous(3, MPIU_REAL, &point));
+  PetscCallMPI(MPI_Type_commit(&point));
+  PetscCall(PetscSFBcastBegin(sf, point, from->vertices, values, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, point, from->vertices, values, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&point));
+  PetscCall(PetscSFDestroy(&sf));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FillFromImage(EqmSoup soup, EqmSoup image, EqmMap *map)
+{
+  const PetscInt count = soup->vertex_end - soup->vertex_start;
+  PetscBool lifted = PETSC_FALSE, any;
+  PetscReal *points;
+
+  PetscFunctionBegin;
+  PetscCall(CheckCount(soup, image->num_vertices, image->file));
+  PetscCall(PetscMalloc1(3 * count, &points));
+  PetscCall(Redeal(image, soup, points));
+  for (PetscInt i = 0; i < count; i++) lifted = (PetscBool)(lifted || points[3 * i + 2] != 0.0);
+  PetscCall(MPIU_Allreduce(&lifted, &any, 1, MPIU_BOOL, MPI_LOR, soup->comm));
+  PetscCall(EqmMapCreate(soup, any ? 3 : 2, map));
+  for (PetscInt i = 0; i < count; i++) {
+    for (PetscInt d = 0; d < (*map)->dim; d++) (*map)->coordinates[(*map)->dim * i + d] = points[3 * i + d];
+  }
+  PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadImage(EqmSoup soup, const char *file, EqmMap *map)
+{
+  PetscErrorCode error;
+  EqmSoup image;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupRead(soup->comm, file, &image));
+  error = FillFromImage(soup, image, map);
+  PetscCall(EqmSoupDestroy(&image));
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}
+
+/* Read the coordinates of a map of the mesh `soup`: from a result file (.h5), or from a mesh of any format whose
+   vertices are the images; with z = 0 everywhere it is a planar map. Ratios stay zero until they are measured. Errors:
+   EQM_ERR_IO, EQM_ERR_MESH (the vertex counts differ). Collective. */
+PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *map)
+{
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  *map = NULL;
+  error = EqmHasSuffix(file, ".h5") ? ReadResult(soup, file, map) : ReadImage(soup, file, map);
+  if (error && *map) PetscCall(EqmMapDestroy(map));
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,200 @@
+/* The result file: the map, the mesh, the distortion, the history and where it all came from, in HDF5. */
+#include "store.h"
+#include "h5.h"
+#include <stddef.h>
+#include <time.h>
+
+static EqmSlab VertexSlab(EqmSoup soup, PetscInt width)
+{
+  const EqmSlab slab = {soup->num_vertices, soup->vertex_start, soup->vertex_end - soup->vertex_start, width};
+  return slab;
+}
+
+static EqmSlab CellSlab(EqmSoup soup, PetscInt width)
+{
+  const EqmSlab slab = {soup->num_cells, soup->cell_start, soup->cell_end - soup->cell_start, width};
+  return slab;
+}
+
+/* The history is the same everywhere: rank 0 writes it. */
+static EqmSlab HistorySlab(EqmMap map, PetscMPIInt rank)
+{
+  const EqmSlab slab = {map->num_history, 0, rank == 0 ? map->num_history : 0, 0};
+  return slab;
+}
+
+static const struct {
+  const char *path;
+  size_t offset;
+} history_reals[] = {{"/history/energy", offsetof(EqmHistoryRow, energy)},
+                     {"/history/sd", offsetof(EqmHistoryRow, sd)},
+                     {"/history/step", offsetof(EqmHistoryRow, step)},
+                     {"/history/gradient_norm", offsetof(EqmHistoryRow, gradient_norm)},
+                     {"/history/seconds", offsetof(EqmHistoryRow, seconds)}},
+  history_counts[] = {{"/history/folds", offsetof(EqmHistoryRow, folds)},
+                      {"/history/evaluations", offsetof(EqmHistoryRow, work) + offsetof(EqmWork, evaluations)},
+                      {"/history/factorizations", offsetof(EqmHistoryRow, work) + offsetof(EqmWork, factorizations)},
+                      {"/history/coupled_factorizations",
+                       offsetof(EqmHistoryRow, work) + offsetof(EqmWork, coupled_factorizations)},
+                      {"/history/solves", offsetof(EqmHistoryRow, work) + offsetof(EqmWork, solves)}},
+  map_reals[] = {{"energy_initial", offsetof(struct _p_EqmMap, energy_initial)},
+                 {"energy_final", offsetof(struct _p_EqmMap, energy_final)},
+                 {"mesh_measure", offsetof(struct _p_EqmMap, distortion.mesh_measure)},
+                 {"image_measure", offsetof(struct _p_EqmMap, distortion.image_measure)},
+                 {"ratio_sd", offsetof(struct _p_EqmMap, distortion.ratio.sd)},
+                 {"ratio_mean", offsetof(struct _p_EqmMap, distortion.ratio.mean)},
+                 {"ratio_min", offsetof(struct _p_EqmMap, distortion.ratio.min)},
+                 {"ratio_max", offsetof(struct _p_EqmMap, distortion.ratio.max)},
+                 {"ratio_error_mean", offsetof(struct _p_EqmMap, distortion.ratio_error.mean)},
+                 {"angle_error_mean", offsetof(struct _p_EqmMap, distortion.angle_error.mean)},
+                 {"angle_error_median", offsetof(struct _p_EqmMap, distortion.angle_error.p50)},
+                 {"angle_error_max", offsetof(struct _p_EqmMap, distortion.angle_error.max)},
+                 {"quasiconformal_mean", offsetof(struct _p_EqmMap, distortion.quasiconformal_mean)},
+                 {"quasiconformal_max", offsetof(struct _p_EqmMap, distortion.quasiconformal_max)},
+                 {"seconds_total", offsetof(struct _p_EqmMap, total_seconds)}};
+#define LENGTH(table) ((int)(sizeof(table) / sizeof((table)[0])))
+
+static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
+{
+  EqmSoup soup = map->soup;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5DeclareReals(h5, "/map/coordinates", soup->num_vertices, map->dim));
+  PetscCall(EqmH5DeclareReals(h5, "/mesh/vertices", soup->num_vertices, 3));
+  PetscCall(EqmH5DeclareIntegers(h5, "/mesh/cells", soup->num_cells, soup->cell_size));
+  PetscCall(EqmH5DeclareReals(h5, "/cell/ratio", soup->num_cells, 0));
+  PetscCall(EqmH5DeclareReals(h5, "/vertex/ratio", soup->num_vertices, 0));
+  if (soup->density) PetscCall(EqmH5DeclareReals(h5, "/cell/density", soup->num_cells, 0));
+  PetscCall(EqmH5DeclareIntegers(h5, "/history/iteration", map->num_history, 0));
+  for (int k = 0; k < LENGTH(history_reals); k++)
+    PetscCall(EqmH5DeclareReals(h5, history_reals[k].path, map->num_history, 0));
+  for (int k = 0; k < LENGTH(history_counts); k++)
+    PetscCall(EqmH5DeclareIntegers(h5, history_counts[k].path, map->num_history, 0));
+  PetscFunctionReturn(0);
+}
+
+/* Who made it, from what, how. */
+static PetscErrorCode PutProvenance(EqmH5 h5, EqmMap map)
+{
+  char *options = NULL, date[32] = "";
+  const time_t now = time(NULL);
+  struct tm parts;
+
+  PetscFunctionBegin;
+  if (gmtime_r(&now, &parts)) (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  PetscCall(EqmH5PutText(h5, "version", EqmVersion()));
+  PetscCall(EqmH5PutText(h5, "git_commit", EqmCommit()));
+  PetscCall(EqmH5PutText(h5, "date", date));
+  PetscCall(EqmH5PutText(h5, "command", map->command));
+  PetscCall(EqmH5PutText(h5, "method", map->method));
+  PetscCall(PetscOptionsGetAll(NULL, &options));
+  PetscCall(EqmH5PutText(h5, "options", options));
+  PetscCall(PetscFree(options));
+  PetscCall(EqmH5PutText(h5, "mesh_file", map->soup->file));
+  PetscCall(EqmH5PutInteger(h5, "mesh_checksum", map->soup->checksum));
+  PetscCall(EqmH5PutInteger(h5, "ranks", map->ranks));
+  PetscCall(EqmH5PutInteger(h5, "threads", map->threads));
+  PetscFunctionReturn(0);
+}
+
+/* How it went. */
+static PetscErrorCode PutOutcome(EqmH5 h5, EqmMap map)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmH5PutText(h5, "status", EqmStatusName(map->status)));
+  PetscCall(EqmH5PutInteger(h5, "exit_code", (PetscInt64)map->status));
+  PetscCall(EqmH5PutText(h5, "message", map->message));
+  PetscCall(EqmH5PutInteger(h5, "iterations", map->iterations));
+  PetscCall(EqmH5PutInteger(h5, "folds", map->distortion.folds));
+  for (int k = 0; k < LENGTH(map_reals); k++) {
+    const PetscReal *value = (const PetscReal *)((const char *)map + map_reals[k].offset);
+    PetscCall(EqmH5PutReal(h5, map_reals[k].path, *value));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteCells(EqmH5 h5, EqmSoup soup)
+{
+  const PetscInt length = soup->cell_size * (soup->cell_end - soup->cell_start);
+  PetscErrorCode error;
+  PetscInt64 *wide;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(length, &wide)); /* converted here: HDF5's own conversion would break the collective write */
+  for (PetscInt k = 0; k < length; k++) wide[k] = soup->cells[k];
+  error = EqmH5WriteIntegers(h5, "/mesh/cells", CellSlab(soup, soup->cell_size), wide);
+  PetscCall(PetscFree(wide));
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteHistory(EqmH5 h5, EqmMap map)
+{
+  const EqmSlab slab = HistorySlab(map, h5->rank);
+  PetscErrorCode error;
+  PetscReal *reals;
+  PetscInt64 *counts;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(map->num_history, &reals, map->num_history, &counts));
+  for (PetscInt i = 0; i < map->num_history; i++) counts[i] = map->history[i].iteration;
+  error = EqmH5WriteIntegers(h5, "/history/iteration", slab, counts);
+  for (int k = 0; k < LENGTH(history_reals) && !error; k++) {
+    for (PetscInt i = 0; i < map->num_history; i++) {
+      reals[i] = *(const PetscReal *)((const char *)&map->history[i] + history_reals[k].offset);
+    }
+    error = EqmH5WriteReals(h5, history_reals[k].path, slab, reals);
+  }
+  for (int k = 0; k < LENGTH(history_counts) && !error; k++) {
+    for (PetscInt i = 0; i < map->num_history; i++) {
+      counts[i] = *(const PetscInt64 *)((const char *)&map->history[i] + history_counts[k].offset);
+    }
+    error = EqmH5WriteIntegers(h5, history_counts[k].path, slab, counts);
+  }
+  PetscCall(PetscFree2(reals, counts));
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
+{
+  EqmSoup soup = map->soup;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5WriteReals(h5, "/map/coordinates", VertexSlab(soup, map->dim), map->coordinates));
+  PetscCall(EqmH5WriteReals(h5, "/mesh/vertices", VertexSlab(soup, 3), soup->vertices));
+  PetscCall(WriteCells(h5, soup));
+  PetscCall(EqmH5WriteReals(h5, "/cell/ratio", CellSlab(soup, 0), map->cell_ratio));
+  PetscCall(EqmH5WriteReals(h5, "/vertex/ratio", VertexSlab(soup, 0), map->vertex_ratio));
+  if (soup->density) PetscCall(EqmH5WriteReals(h5, "/cell/density", CellSlab(soup, 0), soup->density));
+  PetscCall(WriteHistory(h5, map));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Fill(EqmH5 h5, EqmMap map)
+{
+  PetscFunctionBegin;
+  PetscCall(DeclareArrays(h5, map));
+  PetscCall(PutProvenance(h5, map));
+  PetscCall(PutOutcome(h5, map));
+  PetscCall(EqmH5PutInteger(h5, "complete", 0));
+  PetscCall(EqmH5Reserve(h5));
+  PetscCall(WriteArrays(h5, map));
+  PetscFunctionReturn(0);
+}
+
+/* Write the result file: everything about the map, in input numbering. It appears under its name when it is complete; a
+   file that was there survives a failure. Errors: EQM_ERR_IO on all ranks. Collective. */
+PetscErrorCode EqmMapWriteResult(EqmMap map, const char *file)
+{
+  PetscErrorCode error;
+  EqmH5 h5;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5Create(map->soup->comm, file, &h5));
+  error = Fill(h5, map);
+  if (!error) error = EqmH5Commit(&h5);
+  if (error) PetscCall(EqmH5Close(&h5));
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}

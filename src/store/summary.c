@@ -1,0 +1,174 @@
+/* The summary of a run as JSON, for scripts. */
+#include "store.h"
+#include "base/atomicfile.h"
+#include <cjson/cJSON.h>
+#include <time.h>
+
+/* cJSON writes the shortest digits that bring back the same bits, and null for what is not a number. */
+static void AddNumber(cJSON *object, const char *key, PetscReal value)
+{
+  (void)cJSON_AddNumberToObject(object, key, value);
+}
+
+static void AddCount(cJSON *object, const char *key, PetscInt64 value)
+{
+  (void)cJSON_AddNumberToObject(object, key, (double)value);
+}
+
+static void AddText(cJSON *object, const char *key, const char *text)
+{
+  (void)cJSON_AddStringToObject(object, key, text);
+}
+
+static void AddDate(cJSON *root)
+{
+  const time_t now = time(NULL);
+  struct tm parts;
+  char date[32] = "";
+
+  if (gmtime_r(&now, &parts)) (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  AddText(root, "date", date);
+}
+
+static void AddRun(cJSON *root, EqmMap map)
+{
+  cJSON *mesh, *parallel;
+
+  AddText(root, "equimap", EqmVersion());
+  AddText(root, "git_commit", EqmCommit());
+  AddDate(root);
+  AddText(root, "command", map->command);
+  AddText(root, "method", map->method);
+  AddText(root, "status", EqmStatusName(map->status));
+  AddCount(root, "exit_code", (PetscInt64)map->status);
+  AddText(root, "message", map->message);
+  mesh = cJSON_AddObjectToObject(root, "mesh");
+  AddText(mesh, "file", map->soup->file);
+  AddCount(mesh, "vertices", map->soup->num_vertices);
+  AddCount(mesh, "cells", map->soup->num_cells);
+  AddCount(mesh, "boundary_vertices", map->num_boundary_vertices);
+  AddNumber(mesh, "measure", map->distortion.mesh_measure);
+  AddCount(mesh, "checksum", map->soup->checksum);
+  parallel = cJSON_AddObjectToObject(root, "parallel");
+  AddCount(parallel, "ranks", map->ranks);
+  AddCount(parallel, "threads", map->threads);
+}
+
+static void AddPercentiles(cJSON *object, const EqmStatistics *statistics)
+{
+  AddNumber(object, "p25", statistics->p25);
+  AddNumber(object, "p50", statistics->p50);
+  AddNumber(object, "p75", statistics->p75);
+  AddNumber(object, "p95", statistics->p95);
+}
+
+/* Angles mean something on triangles only: null elsewhere. */
+static void AddAngle(cJSON *object, const char *key, PetscBool known, PetscReal value)
+{
+  if (known)
+    AddNumber(object, key, value);
+  else
+    (void)cJSON_AddNullToObject(object, key);
+}
+
+static void AddQuality(cJSON *root, EqmMap map)
+{
+  const EqmDistortion *distortion = &map->distortion;
+  const PetscBool flat = (PetscBool)(map->soup->cell_size == 3);
+  cJSON *group;
+
+  AddCount(root, "iterations", map->iterations);
+  group = cJSON_AddObjectToObject(root, "energy");
+  AddNumber(group, "initial", map->energy_initial);
+  AddNumber(group, "final", map->energy_final);
+  group = cJSON_AddObjectToObject(root, "ratio");
+  AddNumber(group, "mean", distortion->ratio.mean);
+  AddNumber(group, "sd", distortion->ratio.sd);
+  AddNumber(group, "min", distortion->ratio.min);
+  AddNumber(group, "max", distortion->ratio.max);
+  AddPercentiles(group, &distortion->ratio);
+  group = cJSON_AddObjectToObject(root, "ratio_error");
+  AddNumber(group, "mean", distortion->ratio_error.mean);
+  AddNumber(group, "sd", distortion->ratio_error.sd);
+  AddPercentiles(group, &distortion->ratio_error);
+  group = cJSON_AddObjectToObject(root, "angle_error_deg");
+  AddAngle(group, "mean", flat, distortion->angle_error.mean);
+  AddAngle(group, "median", flat, distortion->angle_error.p50);
+  AddAngle(group, "sd", flat, distortion->angle_error.sd);
+  AddAngle(group, "max", flat, distortion->angle_error.max);
+  group = cJSON_AddObjectToObject(root, "quasiconformal");
+  AddAngle(group, "mean", flat, distortion->quasiconformal_mean);
+  AddAngle(group, "max", flat, distortion->quasiconformal_max);
+  AddCount(root, "folds", distortion->folds);
+}
+
+static void AddCost(cJSON *root, EqmMap map)
+{
+  static const struct {
+    const char *key;
+    EqmPhase phase;
+  } phases[] = {{"read", EQM_PHASE_READ},   {"diagnose", EQM_PHASE_DIAGNOSE}, {"distribute", EQM_PHASE_DISTRIBUTE},
+                {"start", EQM_PHASE_START}, {"minimise", EQM_PHASE_MINIMISE}, {"measure", EQM_PHASE_MEASURE},
+                {"write", EQM_PHASE_WRITE}};
+  static const struct {
+    const char *key;
+    EqmEvent event;
+  } events[] = {{"partition", EQM_EVENT_PARTITION},
+                {"assemble", EQM_EVENT_ASSEMBLE},
+                {"factor", EQM_EVENT_FACTOR},
+                {"solve", EQM_EVENT_SOLVE},
+                {"kernel", EQM_EVENT_KERNEL}};
+  cJSON *group;
+
+  group = cJSON_AddObjectToObject(root, "work");
+  AddCount(group, "evaluations", map->work.evaluations);
+  AddCount(group, "factorizations", map->work.factorizations);
+  AddCount(group, "coupled_factorizations", map->work.coupled_factorizations);
+  AddCount(group, "solves", map->work.solves);
+  group = cJSON_AddObjectToObject(root, "seconds");
+  AddNumber(group, "total", map->total_seconds);
+  for (int k = 0; k < EQM_NUM_PHASES; k++) AddNumber(group, phases[k].key, map->phase_seconds[phases[k].phase]);
+  group = cJSON_AddObjectToObject(root, "events");
+  for (int k = 0; k < EQM_NUM_EVENTS; k++) AddNumber(group, events[k].key, map->event_seconds[events[k].event]);
+  group = cJSON_AddObjectToObject(root, "memory_bytes");
+  AddCount(group, "max_per_rank", map->memory_max_per_rank);
+  AddCount(group, "total", map->memory_total);
+}
+
+static PetscErrorCode WriteOnRoot(EqmMap map, const char *name, char *message, size_t length)
+{
+  cJSON *root = cJSON_CreateObject();
+  char *text;
+  PetscErrorCode error = EQM_ERR_IO;
+  EqmAtomicFile file;
+
+  AddRun(root, map);
+  AddQuality(root, map);
+  AddCost(root, map);
+  text = cJSON_Print(root);
+  cJSON_Delete(root);
+  (void)snprintf(message, length, "cannot write '%.1000s': out of memory", name);
+  if (!text) return error;
+  error = EqmAtomicOpen(name, &file, message, length);
+  if (!error) {
+    EqmAtomicPrint(&file, "%s\n", text);
+    error = EqmAtomicCommit(&file, message, length);
+  }
+  cJSON_free(text);
+  return error;
+}
+
+/* Write the summary of a run as JSON, whole or not at all. Errors: EQM_ERR_IO on all ranks. Collective; rank 0 writes.
+ */
+PetscErrorCode EqmMapWriteSummary(EqmMap map, const char *file)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode error = 0;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(map->soup->comm, &rank));
+  if (rank == 0) error = WriteOnRoot(map, file, message, sizeof(message));
+  PetscCall(EqmAgree(map->soup->comm, error, message));
+  PetscFunctionReturn(0);
+}

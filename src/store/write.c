@@ -1,0 +1,109 @@
+/* Where results go: the names that -o lists, each by its suffix. */
+#include "store.h"
+#include "base/atomicfile.h"
+#include <string.h>
+#include <strings.h>
+
+/* Formats that hold a mesh with its vertices at their images; .h5 holds everything. */
+static const char *const image_suffixes[] = {".obj", ".off", ".ply", ".vtu", ".msh", ".gii", ".stl"};
+
+/* Whether a name ends in `suffix`, in small or capital letters. Not collective. */
+PetscBool EqmHasSuffix(const char *name, const char *suffix)
+{
+  const size_t length = strlen(name), tail = strlen(suffix);
+
+  return (PetscBool)(length > tail && !strcasecmp(name + length - tail, suffix));
+}
+
+static PetscBool IsImage(const char *name)
+{
+  for (size_t k = 0; k < sizeof(image_suffixes) / sizeof(image_suffixes[0]); k++) {
+    if (EqmHasSuffix(name, image_suffixes[k])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Do something for every name of a comma-separated list. */
+typedef PetscErrorCode (*Action)(MPI_Comm comm, const char *file, void *context);
+
+static PetscErrorCode ForEachFile(MPI_Comm comm, const char *files, Action action, void *context)
+{
+  PetscErrorCode error = 0;
+  char **names;
+  int count;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrToArray(files, ',', &count, &names));
+  for (int k = 0; k < count && !error; k++) error = action(comm, names[k], context);
+  PetscCall(PetscStrToArrayDestroy(count, names));
+  PetscCall(error);
+  if (count == 0) EqmFail(comm, EQM_ERR_USAGE, "-o names no file");
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckSuffix(MPI_Comm comm, const char *file, void *context)
+{
+  PetscFunctionBegin;
+  (void)context;
+  if (!EqmHasSuffix(file, ".h5") && !IsImage(file)) {
+    EqmFail(comm, EQM_ERR_USAGE,
+            "cannot write '%s': the suffix says the format, one of .h5 .obj .off .ply .vtu .msh .gii .stl", file);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A temporary is made and dropped: the only test that knows about quotas, read-only mounts and remote permissions. */
+static PetscErrorCode CheckPlace(MPI_Comm comm, const char *file, void *context)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode error = 0;
+  EqmAtomicFile probe;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  (void)context;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    error = EqmAtomicBegin(file, &probe, message, sizeof(message));
+    if (!error) EqmAtomicAbort(&probe);
+  }
+  PetscCall(EqmAgree(comm, error, message));
+  PetscFunctionReturn(0);
+}
+
+/* Look before a long run whether every name in the comma-separated `files` can be written. Errors: EQM_ERR_USAGE
+   (unknown suffix), EQM_ERR_IO (no such directory, no permission). Collective. */
+PetscErrorCode EqmMapCheckWritable(MPI_Comm comm, const char *files)
+{
+  PetscFunctionBegin;
+  PetscCall(ForEachFile(comm, files, CheckSuffix, NULL));
+  PetscCall(ForEachFile(comm, files, CheckPlace, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteOne(MPI_Comm comm, const char *file, void *context)
+{
+  EqmMap map = (EqmMap)context;
+
+  PetscFunctionBegin;
+  (void)comm;
+  if (EqmHasSuffix(file, ".h5")) {
+    PetscCall(EqmMapWriteResult(map, file));
+    PetscCall(EqmMapWriteXdmf(map, file));
+  } else {
+    PetscCall(EqmMapWriteImage(map, file));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Write a result to every name in the comma-separated `files`, the format by suffix: .h5 holds everything and gets an
+   .xmf beside it; .obj .off .ply .vtu .msh .gii .stl hold the mesh with its vertices at their images (z = 0 for planar
+   maps) and, where the format can, the ratios. Each file appears whole or not at all, and one that was there survives a
+   failure. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. Collective. */
+PetscErrorCode EqmMapWrite(EqmMap map, const char *files)
+{
+  PetscFunctionBegin;
+  PetscCall(ForEachFile(map->soup->comm, files, CheckSuffix, NULL));
+  PetscCall(ForEachFile(map->soup->comm, files, WriteOne, map));
+  PetscFunctionReturn(0);
+}

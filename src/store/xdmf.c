@@ -1,0 +1,136 @@
+/* The XDMF file beside a result: XML that tells ParaView what the HDF5 file holds. */
+#include "store.h"
+#include "base/atomicfile.h"
+#include <libxml/xmlwriter.h>
+#include <string.h>
+
+typedef struct {
+  xmlTextWriterPtr xml;
+  const char *result; /* name of the result file, without its directory */
+  PetscBool fine;     /* no call has failed so far */
+} Writer;
+
+static void Note(Writer *writer, int outcome)
+{
+  if (outcome < 0) writer->fine = PETSC_FALSE;
+}
+
+static void Open(Writer *writer, const char *element)
+{
+  Note(writer, xmlTextWriterStartElement(writer->xml, BAD_CAST element));
+}
+
+static void Close(Writer *writer)
+{
+  Note(writer, xmlTextWriterEndElement(writer->xml));
+}
+
+static void Attribute(Writer *writer, const char *name, const char *value)
+{
+  Note(writer, xmlTextWriterWriteAttribute(writer->xml, BAD_CAST name, BAD_CAST value));
+}
+
+/* An array of the result file, rows × width, 8 bytes a number. */
+static void Array(Writer *writer, const char *path, const char *type, PetscInt rows, PetscInt width)
+{
+  char text[64];
+
+  Open(writer, "DataItem");
+  (void)snprintf(text, sizeof(text), "%" PetscInt_FMT " %" PetscInt_FMT, rows, width);
+  if (width == 1) (void)snprintf(text, sizeof(text), "%" PetscInt_FMT, rows);
+  Attribute(writer, "Dimensions", text);
+  Attribute(writer, "NumberType", type);
+  Attribute(writer, "Precision", "8");
+  Attribute(writer, "Format", "HDF");
+  Note(writer, xmlTextWriterWriteString(writer->xml, BAD_CAST writer->result));
+  Note(writer, xmlTextWriterWriteString(writer->xml, BAD_CAST ":"));
+  Note(writer, xmlTextWriterWriteString(writer->xml, BAD_CAST path));
+  Close(writer);
+}
+
+static void Field(Writer *writer, const char *name, const char *center, const char *path, PetscInt rows)
+{
+  Open(writer, "Attribute");
+  Attribute(writer, "Name", name);
+  Attribute(writer, "AttributeType", "Scalar");
+  Attribute(writer, "Center", center);
+  Array(writer, path, "Float", rows, 1);
+  Close(writer);
+}
+
+/* The cells with their fields, at the points of one array. */
+static void Grid(Writer *writer, const char *name, EqmSoup soup, const char *points, PetscInt dim)
+{
+  char text[32];
+
+  Open(writer, "Grid");
+  Attribute(writer, "Name", name);
+  Attribute(writer, "GridType", "Uniform");
+  Open(writer, "Topology");
+  Attribute(writer, "TopologyType", soup->cell_size == 3 ? "Triangle" : "Tetrahedron");
+  (void)snprintf(text, sizeof(text), "%" PetscInt_FMT, soup->num_cells);
+  Attribute(writer, "NumberOfElements", text);
+  Array(writer, "/mesh/cells", "Int", soup->num_cells, soup->cell_size);
+  Close(writer);
+  Open(writer, "Geometry");
+  Attribute(writer, "GeometryType", dim == 3 ? "XYZ" : "XY");
+  Array(writer, points, "Float", soup->num_vertices, dim);
+  Close(writer);
+  Field(writer, "ratio", "Cell", "/cell/ratio", soup->num_cells);
+  Field(writer, "vertex_ratio", "Node", "/vertex/ratio", soup->num_vertices);
+  if (soup->density) Field(writer, "density", "Cell", "/cell/density", soup->num_cells);
+  Close(writer);
+}
+
+static PetscBool Compose(EqmMap map, const char *result, xmlBufferPtr buffer)
+{
+  Writer writer = {xmlNewTextWriterMemory(buffer, 0), result, PETSC_TRUE};
+
+  if (!writer.xml) return PETSC_FALSE;
+  Note(&writer, xmlTextWriterSetIndent(writer.xml, 1));
+  Note(&writer, xmlTextWriterStartDocument(writer.xml, "1.0", "UTF-8", NULL));
+  Open(&writer, "Xdmf");
+  Attribute(&writer, "Version", "3.0");
+  Open(&writer, "Domain");
+  Grid(&writer, "mesh", map->soup, "/mesh/vertices", 3);
+  Grid(&writer, "map", map->soup, "/map/coordinates", map->dim);
+  Note(&writer, xmlTextWriterEndDocument(writer.xml));
+  xmlFreeTextWriter(writer.xml);
+  return writer.fine;
+}
+
+static PetscErrorCode WriteOnRoot(EqmMap map, const char *result_file, char *message, size_t length)
+{
+  const char *slash = strrchr(result_file, '/');
+  char name[PETSC_MAX_PATH_LEN];
+  xmlBufferPtr buffer = xmlBufferCreate();
+  PetscErrorCode error = EQM_ERR_IO;
+  EqmAtomicFile file;
+
+  (void)snprintf(name, sizeof(name), "%.*s.xmf", (int)(strlen(result_file) - strlen(".h5")), result_file);
+  (void)snprintf(message, length, "cannot write '%.1000s': out of memory", name);
+  if (buffer && Compose(map, slash ? slash + 1 : result_file, buffer)) {
+    error = EqmAtomicOpen(name, &file, message, length);
+    if (!error) {
+      EqmAtomicWrite(&file, xmlBufferContent(buffer), (size_t)xmlBufferLength(buffer));
+      error = EqmAtomicCommit(&file, message, length);
+    }
+  }
+  if (buffer) xmlBufferFree(buffer);
+  return error;
+}
+
+/* Write NAME.xmf beside the result NAME.h5: the mesh and the map as two grids with their fields. Errors: EQM_ERR_IO on
+   all ranks. Collective; rank 0 writes. */
+PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode error = 0;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(map->soup->comm, &rank));
+  if (rank == 0) error = WriteOnRoot(map, result_file, message, sizeof(message));
+  PetscCall(EqmAgree(map->soup->comm, error, message));
+  PetscFunctionReturn(0);
+}
