@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct {
@@ -173,16 +174,18 @@ PetscErrorCode EqmH5Close(EqmH5 *h5)
   PetscFunctionReturn(0);
 }
 
-/* Reserve the bytes of the temporary; 0 or the error number. */
-static int ReserveBytes(const char *temporary, off_t size)
+/* Reserve the bytes of a file that has been given its length but not its contents; 0 or the error number. */
+static int ReserveBytes(const char *name, off_t *size)
 {
-  const int descriptor = open(temporary, O_WRONLY);
-  int failed;
+  const int descriptor = open(name, O_WRONLY);
+  struct stat status;
+  int failed = 0;
 
   if (descriptor < 0) return errno;
-  failed = posix_fallocate(descriptor, 0, size);
-  if (failed == EINVAL || failed == EOPNOTSUPP)
-    failed = 0; /* a file system that cannot reserve: the writes will tell */
+  if (fstat(descriptor, &status) != 0) failed = errno;
+  *size = failed ? 0 : status.st_size;
+  if (*size > 0) failed = posix_fallocate(descriptor, 0, *size);
+  if (failed == EINVAL || failed == EOPNOTSUPP) failed = 0; /* a file system that cannot reserve: the writes will tell */
   if (close(descriptor) != 0 && !failed) failed = errno;
   return failed;
 }
@@ -193,17 +196,15 @@ static int ReserveBytes(const char *temporary, off_t size)
 PetscErrorCode EqmH5Reserve(EqmH5 h5)
 {
   char message[EQM_MESSAGE_MAX] = "";
-  hsize_t size = 0;
-  PetscBool fine;
+  off_t size = 0;
   int failed = 0;
 
   PetscFunctionBegin;
-  fine = (PetscBool)(H5Fflush(h5->file, H5F_SCOPE_GLOBAL) >= 0 && H5Fget_filesize(h5->file, &size) >= 0);
-  PetscCall(EqmH5Agree(h5, fine, "its arrays cannot be laid out"));
-  if (h5->rank == 0) failed = ReserveBytes(h5->atomic.temporary, (off_t)size);
+  PetscCall(EqmH5Agree(h5, (PetscBool)(H5Fflush(h5->file, H5F_SCOPE_GLOBAL) >= 0), "its arrays cannot be laid out"));
+  if (h5->rank == 0) failed = ReserveBytes(h5->atomic.temporary, &size);
   if (failed) {
-    (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s (it takes %.1f MB)", h5->name,
-                   strerror(failed), (double)size / 1e6);
+    (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s (it takes %.1f MB)", h5->name, strerror(failed),
+                   (double)size / 1e6);
   }
   PetscCall(EqmAgree(h5->comm, failed ? EQM_ERR_IO : 0, message));
   PetscFunctionReturn(0);
