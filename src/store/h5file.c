@@ -185,14 +185,15 @@ static int ReserveBytes(const char *name, off_t *size)
   if (fstat(descriptor, &status) != 0) failed = errno;
   *size = failed ? 0 : status.st_size;
   if (*size > 0) failed = posix_fallocate(descriptor, 0, *size);
-  if (failed == EINVAL || failed == EOPNOTSUPP) failed = 0; /* a file system that cannot reserve: the writes will tell */
+  if (failed == EINVAL || failed == EOPNOTSUPP)
+    failed = 0; /* a file system that cannot reserve: the writes will tell */
   if (close(descriptor) != 0 && !failed) failed = errno;
   return failed;
 }
 
 /* Take the disk space of all declared arrays and attributes before the first array is written: a full disk is then one
-   clear error on rank 0 and not a failure of some rank in the middle of a collective write. Errors: EQM_ERR_IO.
-   Collective. */
+   clear error on rank 0. In the middle of a collective write it would be worse than unclear: Open MPI 4.1 waits for
+   ever when an aggregating rank's write fails. Errors: EQM_ERR_IO. Collective. */
 PetscErrorCode EqmH5Reserve(EqmH5 h5)
 {
   char message[EQM_MESSAGE_MAX] = "";
@@ -203,8 +204,8 @@ PetscErrorCode EqmH5Reserve(EqmH5 h5)
   PetscCall(EqmH5Agree(h5, (PetscBool)(H5Fflush(h5->file, H5F_SCOPE_GLOBAL) >= 0), "its arrays cannot be laid out"));
   if (h5->rank == 0) failed = ReserveBytes(h5->atomic.temporary, &size);
   if (failed) {
-    (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s (it takes %.1f MB)", h5->name, strerror(failed),
-                   (double)size / 1e6);
+    (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s (it takes %.1f MB)", h5->name,
+                   strerror(failed), (double)size / 1e6);
   }
   PetscCall(EqmAgree(h5->comm, failed ? EQM_ERR_IO : 0, message));
   PetscFunctionReturn(0);

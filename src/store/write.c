@@ -1,11 +1,8 @@
 /* Where results go: the names that -o lists, each by its suffix. */
 #include "store.h"
-#include "base/atomicfile.h"
+#include "format/format.h"
 #include <string.h>
 #include <strings.h>
-
-/* Formats that hold a mesh with its vertices at their images; .h5 holds everything. */
-static const char *const image_suffixes[] = {".obj", ".off", ".ply", ".vtu", ".msh", ".gii", ".stl"};
 
 /* Whether a name ends in `suffix`, in small or capital letters. Not collective. */
 PetscBool EqmHasSuffix(const char *name, const char *suffix)
@@ -13,14 +10,6 @@ PetscBool EqmHasSuffix(const char *name, const char *suffix)
   const size_t length = strlen(name), tail = strlen(suffix);
 
   return (PetscBool)(length > tail && !strcasecmp(name + length - tail, suffix));
-}
-
-static PetscBool IsImage(const char *name)
-{
-  for (size_t k = 0; k < sizeof(image_suffixes) / sizeof(image_suffixes[0]); k++) {
-    if (EqmHasSuffix(name, image_suffixes[k])) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
 }
 
 /* Do something for every name of a comma-separated list. */
@@ -41,13 +30,17 @@ static PetscErrorCode ForEachFile(MPI_Comm comm, const char *files, Action actio
   PetscFunctionReturn(0);
 }
 
+/* .h5 holds everything; of the mesh formats, those that rank 0 can write hold the image mesh. */
 static PetscErrorCode CheckSuffix(MPI_Comm comm, const char *file, void *context)
 {
+  const EqmFormat *format = EqmFormatOfSuffix(file);
+  char suffixes[256];
+
   PetscFunctionBegin;
   (void)context;
-  if (!EqmHasSuffix(file, ".h5") && !IsImage(file)) {
-    EqmFail(comm, EQM_ERR_USAGE,
-            "cannot write '%s': the suffix says the format, one of .h5 .obj .off .ply .vtu .msh .gii .stl", file);
+  if (!EqmHasSuffix(file, ".h5") && !(format && format->write)) {
+    EqmFormatListSuffixes(PETSC_TRUE, suffixes, sizeof(suffixes));
+    EqmFail(comm, EQM_ERR_USAGE, "cannot write '%s': the suffix says the format, one of %s", file, suffixes);
   }
   PetscFunctionReturn(0);
 }
