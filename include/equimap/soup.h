@@ -92,9 +92,11 @@ typedef struct {
 typedef enum { EQM_SHAPE_DISK, EQM_SHAPE_SPHERE, EQM_SHAPE_BALL, EQM_SHAPE_OTHER } EqmTopology;
 
 typedef struct {
+  PetscInt cell_size; /* 3 triangles, 4 tetrahedra */
   EqmFinding finding[EQM_NUM_FINDINGS];
   PetscInt64 num_vertices, num_edges, num_faces, num_cells, num_boundary_vertices, num_boundary_edges;
-  PetscInt64 num_components, num_boundary_loops, euler_characteristic, genus; /* genus: -1 where it means nothing */
+  /* of a solid: the surfaces of its boundary in place of loops, and their genus; genus is -1 where it means nothing */
+  PetscInt64 num_components, num_boundary_loops, euler_characteristic, genus;
   PetscReal measure, smallest_cell, largest_cell;                             /* area or volume */
   PetscReal worst_cell_quality;                                               /* 0 flat ... 1 equilateral */
   EqmTopology topology;

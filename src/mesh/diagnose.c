@@ -1,0 +1,234 @@
+/* What is this mesh, and what is wrong with it? */
+#include "mesh/diagnose.h"
+
+/* Sums over all vertices' links. */
+typedef struct {
+  PetscInt64 vertices, edges, faces, cells; /* in use */
+  PetscInt64 boundary_vertices, boundary_edges, boundary_faces;
+} Counts;
+
+static void CountTriangleEdges(const EqmVicinity *vicinity, PetscInt v, const EqmLink *link, EqmFinding *finding,
+                               Counts *counts)
+{
+  for (PetscInt i = 0; i < link->num_vertices; i++) {
+    const PetscInt cells = link->leaving[i] + link->entering[i];
+    const PetscInt a = vicinity->input[v], b = vicinity->input[link->vertex[i]];
+
+    if (b < a) continue;
+    counts->edges++;
+    if (cells == 1) counts->boundary_edges++;
+    if (cells > 2) EqmFindingAdd(&finding[EQM_FINDING_NON_MANIFOLD_EDGE], a, b, -1, -1);
+    if (cells == 2 && link->leaving[i] != 1) {
+      EqmFindingAdd(&finding[EQM_FINDING_INCONSISTENT_ORIENTATION], a, b, -1, -1);
+    }
+  }
+}
+
+static void CountTetrahedronFaces(const EqmVicinity *vicinity, PetscInt v, const EqmLink *link, EqmFinding *finding,
+                                  Counts *counts)
+{
+  const PetscInt a = vicinity->input[v];
+
+  for (PetscInt i = 0; i < link->num_vertices; i++) {
+    if (vicinity->input[link->vertex[i]] < a) continue;
+    counts->edges++;
+    if (link->on_boundary[i]) counts->boundary_edges++;
+  }
+  for (PetscInt e = 0; e < link->num_edges; e++) {
+    const PetscInt b = vicinity->input[link->vertex[link->edge[2 * e]]];
+    const PetscInt c = vicinity->input[link->vertex[link->edge[2 * e + 1]]];
+
+    if (b < a || c < a) continue;
+    counts->faces++;
+    if (link->edge_count[e] == 1) counts->boundary_faces++;
+    if (link->edge_count[e] > 2) {
+      EqmFindingAdd(&finding[EQM_FINDING_NON_MANIFOLD_EDGE], a, PetscMin(b, c), PetscMax(b, c), -1);
+    }
+  }
+}
+
+static PetscErrorCode DiagnoseLinks(const EqmVicinity *vicinity, EqmFinding *finding, Counts *counts)
+{
+  EqmLink link;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLinkCreate(vicinity, &link));
+  for (PetscInt v = 0; v < vicinity->num_owned; v++) {
+    PetscBool boundary = PETSC_FALSE;
+
+    EqmLinkCompute(vicinity, v, &link);
+    if (!link.num_vertices) {
+      EqmFindingAdd(&finding[EQM_FINDING_UNREFERENCED], vicinity->input[v], -1, -1, -1);
+      continue;
+    }
+    counts->vertices++;
+    if (vicinity->cell_size == 3)
+      CountTriangleEdges(vicinity, v, &link, finding, counts);
+    else
+      CountTetrahedronFaces(vicinity, v, &link, finding, counts);
+    /* where an edge has too many cells, its ends cannot be regular: that is said of the edge alone */
+    if (link.manifold && !link.regular) {
+      EqmFindingAdd(&finding[EQM_FINDING_NON_MANIFOLD_VERTEX], vicinity->input[v], -1, -1, -1);
+    }
+    for (PetscInt i = 0; i < link.num_vertices; i++) boundary = (PetscBool)(boundary || link.on_boundary[i]);
+    if (boundary) counts->boundary_vertices++;
+  }
+  PetscCall(EqmLinkReset(&link));
+  for (PetscInt c = 0; c < vicinity->num_cells; c++) {
+    if (EqmVicinityCellOwnerVertex(vicinity, c) < vicinity->num_owned) counts->cells++;
+  }
+  if (vicinity->cell_size == 3) counts->faces = counts->cells;
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, counts, sizeof(*counts) / sizeof(PetscInt64), MPIU_INT64, MPI_SUM, vicinity->comm));
+  PetscFunctionReturn(0);
+}
+
+/* One vertex of every connected component, by a finding each. */
+static PetscErrorCode DiagnoseComponents(const EqmVicinity *vicinity, EqmFinding *finding)
+{
+  const PetscInt cs = vicinity->cell_size;
+  EqmForest forest;
+  PetscInt *label;
+
+  PetscFunctionBegin;
+  PetscCall(EqmForestCreate(vicinity->num_local, &forest));
+  for (PetscInt c = 0; c < vicinity->num_cells; c++) {
+    for (PetscInt a = 1; a < cs; a++) {
+      (void)EqmForestJoin(&forest, vicinity->cells[cs * c], vicinity->cells[cs * c + a], PETSC_FALSE);
+    }
+  }
+  PetscCall(PetscMalloc1(vicinity->num_local, &label));
+  PetscCall(EqmForestLabel(vicinity->comm, vicinity->ghosts, &forest, vicinity->input, label, NULL, NULL));
+  for (PetscInt v = 0; v < vicinity->num_owned; v++) {
+    const PetscBool in_use = (PetscBool)(vicinity->star_start[v] < vicinity->star_start[v + 1]);
+
+    if (in_use && label[v] == vicinity->input[v]) EqmFindingAdd(finding, label[v], -1, -1, -1);
+  }
+  PetscCall(PetscFree(label));
+  PetscCall(EqmForestReset(&forest));
+  PetscFunctionReturn(0);
+}
+
+/* Twins are noted and left out of everything that follows. */
+static PetscErrorCode DiagnoseDuplicateCells(EqmVicinity *vicinity, EqmFinding *finding)
+{
+  PetscInt *first;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(vicinity->num_cells, &first));
+  PetscCall(EqmVicinityFindDuplicates(vicinity, first));
+  for (PetscInt c = 0; c < vicinity->num_cells; c++) {
+    if (first[c] == c || EqmVicinityCellOwnerVertex(vicinity, c) >= vicinity->num_owned) continue;
+    EqmFindingAdd(finding, vicinity->cell_input[c], vicinity->cell_input[first[c]], -1, -1);
+  }
+  PetscCall(EqmVicinityDropDuplicates(vicinity, first));
+  PetscCall(PetscFree(first));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DiagnoseVicinity(EqmVicinity *vicinity, EqmDiagnosis *diagnosis, Counts *counts)
+{
+  EqmFinding *const finding = diagnosis->finding;
+  PetscBool *on_boundary;
+  PetscInt64 inconsistent;
+
+  PetscFunctionBegin;
+  PetscCall(EqmDiagnoseDuplicateVertices(vicinity, &finding[EQM_FINDING_DUPLICATE_VERTEX]));
+  PetscCall(DiagnoseLinks(vicinity, finding, counts));
+  PetscCall(DiagnoseComponents(vicinity, &finding[EQM_FINDING_COMPONENTS]));
+  if (counts->boundary_edges) {
+    PetscCall(PetscMalloc1(vicinity->num_local, &on_boundary));
+    PetscCall(EqmVicinityMarkBoundary(vicinity, on_boundary));
+    PetscCall(EqmDiagnoseBoundary(vicinity, on_boundary, diagnosis));
+    PetscCall(PetscFree(on_boundary));
+  }
+  inconsistent = finding[EQM_FINDING_INCONSISTENT_ORIENTATION].count;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inconsistent, 1, MPIU_INT64, MPI_SUM, vicinity->comm));
+  if (vicinity->cell_size == 3 && inconsistent) {
+    PetscCall(EqmDiagnoseOrientation(vicinity, &finding[EQM_FINDING_NOT_ORIENTABLE]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Genus, from Euler's formula; of a solid: of its boundary. */
+static PetscInt64 Genus(const EqmDiagnosis *diagnosis, const Counts *counts)
+{
+  const EqmFinding *const finding = diagnosis->finding;
+  PetscInt64 twice;
+
+  if (finding[EQM_FINDING_NON_MANIFOLD_EDGE].count || finding[EQM_FINDING_NON_MANIFOLD_VERTEX].count ||
+      finding[EQM_FINDING_NOT_ORIENTABLE].count || !counts->cells) {
+    return -1;
+  }
+  if (diagnosis->cell_size == 3) {
+    twice = 2 * diagnosis->num_components - diagnosis->num_boundary_loops - diagnosis->euler_characteristic;
+  } else {
+    twice = 2 * diagnosis->num_boundary_loops -
+            (counts->boundary_vertices - counts->boundary_edges + counts->boundary_faces);
+  }
+  return twice / 2;
+}
+
+static EqmTopology Classify(const EqmDiagnosis *diagnosis)
+{
+  if (diagnosis->genus != 0 || diagnosis->num_components != 1) return EQM_SHAPE_OTHER;
+  if (diagnosis->cell_size == 4) {
+    return diagnosis->num_boundary_loops == 1 && diagnosis->euler_characteristic == 1 ? EQM_SHAPE_BALL
+                                                                                      : EQM_SHAPE_OTHER;
+  }
+  if (diagnosis->num_boundary_loops > 1) return EQM_SHAPE_OTHER;
+  return diagnosis->num_boundary_loops == 1 ? EQM_SHAPE_DISK : EQM_SHAPE_SPHERE;
+}
+
+/* From counts and merged findings to what the mesh is. */
+static void Conclude(const EqmSoup soup, const Counts *counts, EqmDiagnosis *diagnosis)
+{
+  EqmFinding *const finding = diagnosis->finding;
+
+  diagnosis->cell_size = soup->cell_size;
+  diagnosis->num_vertices = soup->num_vertices;
+  diagnosis->num_cells = soup->num_cells;
+  diagnosis->num_edges = counts->edges;
+  diagnosis->num_faces = counts->faces;
+  diagnosis->num_boundary_vertices = counts->boundary_vertices;
+  diagnosis->num_boundary_edges = counts->boundary_edges;
+  diagnosis->num_components = finding[EQM_FINDING_COMPONENTS].count;
+  diagnosis->num_boundary_loops = finding[EQM_FINDING_HOLES].count;
+  diagnosis->euler_characteristic = counts->vertices - counts->edges + counts->faces;
+  if (soup->cell_size == 4) diagnosis->euler_characteristic -= counts->cells;
+  diagnosis->genus = Genus(diagnosis, counts);
+  diagnosis->topology = Classify(diagnosis);
+
+  /* one component, one loop are no finding */
+  if (diagnosis->num_components <= 1) finding[EQM_FINDING_COMPONENTS] = (EqmFinding){0};
+  if (diagnosis->num_boundary_loops <= 1)
+    finding[EQM_FINDING_HOLES] = (EqmFinding){0};
+  else
+    finding[EQM_FINDING_HOLES].count--;
+  if (diagnosis->genus > 0) finding[EQM_FINDING_GENUS].count = diagnosis->genus;
+  if (soup->cell_size == 3 && counts->cells) {
+    finding[EQM_FINDING_CLOSED].count = counts->boundary_edges ? 0 : 1;
+    finding[EQM_FINDING_OPEN].count = diagnosis->num_boundary_loops;
+  }
+}
+
+/* Look at a mesh: what it is, what is wrong with it, where. Cells with a bad index or a repeated vertex, and later
+   twins of a cell, are counted and then left aside. The findings do not depend on the number of ranks; no rank holds
+   more than its slab and what touches it. Never fails for what the mesh is like. Collective on the soup's communicator.
+ */
+PetscErrorCode EqmSoupDiagnose(EqmSoup soup, EqmDiagnosis *diagnosis)
+{
+  EqmVicinity vicinity;
+  Counts counts = {0};
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(diagnosis, sizeof(*diagnosis)));
+  PetscCall(EqmVicinityCreate(soup, &vicinity));
+  PetscCall(DiagnoseDuplicateCells(&vicinity, &diagnosis->finding[EQM_FINDING_DUPLICATE_CELL]));
+  PetscCall(EqmDiagnoseCells(soup, &vicinity, diagnosis));
+  PetscCall(DiagnoseVicinity(&vicinity, diagnosis, &counts));
+  PetscCall(EqmVicinityReset(&vicinity));
+  PetscCall(EqmFindingsMerge(soup->comm, EQM_NUM_FINDINGS, diagnosis->finding));
+  Conclude(soup, &counts, diagnosis);
+  PetscFunctionReturn(0);
+}

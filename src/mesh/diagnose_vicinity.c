@@ -1,0 +1,323 @@
+/* Collect the cells around each rank's slab of vertices. */
+#include "mesh/diagnose.h"
+#include "base/exchange.h"
+
+/* Tell whether a cell of the soup (its `cell_size` input vertex numbers) can be looked at. Not collective. */
+EqmCellUse EqmSoupCellUse(EqmSoup soup, const PetscInt *cell)
+{
+  EqmCellUse use = EQM_CELL_USABLE;
+
+  for (PetscInt a = 0; a < soup->cell_size; a++) {
+    if (cell[a] < 0 || cell[a] >= soup->num_vertices) return EQM_CELL_BAD_INDEX;
+    for (PetscInt b = 0; b < a; b++) {
+      if (cell[a] == cell[b]) use = EQM_CELL_REPEATED_VERTEX;
+    }
+  }
+  return use;
+}
+
+/* Usable cells of this slab as records (input number, vertices), one per rank that owns a vertex of it. With
+   `destination` NULL they are only counted. */
+static PetscErrorCode PackCells(EqmSoup soup, PetscLayout layout, PetscInt *count, PetscInt *records,
+                                PetscMPIInt *destination)
+{
+  const PetscInt cs = soup->cell_size;
+
+  PetscFunctionBegin;
+  *count = 0;
+  for (PetscInt c = soup->cell_start; c < soup->cell_end; c++) {
+    const PetscInt *const cell = soup->cells + cs * (c - soup->cell_start);
+    PetscMPIInt owner[4];
+
+    if (EqmSoupCellUse(soup, cell) != EQM_CELL_USABLE) continue;
+    for (PetscInt a = 0; a < cs; a++) {
+      PetscBool seen = PETSC_FALSE;
+
+      if (layout->size == 1)
+        owner[a] = 0;
+      else
+        PetscCall(PetscLayoutFindOwner(layout, cell[a], &owner[a]));
+      for (PetscInt b = 0; b < a; b++) seen = (PetscBool)(seen || owner[a] == owner[b]);
+      if (seen) continue;
+      if (destination) {
+        destination[*count] = owner[a];
+        records[(1 + cs) * *count] = c;
+        for (PetscInt b = 0; b < cs; b++) records[(1 + cs) * *count + 1 + b] = cell[b];
+      }
+      ++*count;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CollectCells(EqmSoup soup, EqmVicinity *vicinity)
+{
+  const PetscInt cs = soup->cell_size;
+  PetscInt count, *records, *received;
+  PetscMPIInt *destination;
+
+  PetscFunctionBegin;
+  PetscCall(PackCells(soup, vicinity->layout, &count, NULL, NULL));
+  PetscCall(PetscMalloc1((1 + cs) * count, &records));
+  PetscCall(PetscMalloc1(count, &destination));
+  PetscCall(PackCells(soup, vicinity->layout, &count, records, destination));
+  if (vicinity->size == 1) {
+    received = records;
+    vicinity->num_cells = count;
+  } else {
+    PetscCall(EqmExchange(soup->comm, count, 1 + cs, destination, records, &vicinity->num_cells, &received));
+    PetscCall(PetscFree(records));
+  }
+  PetscCall(PetscFree(destination));
+  PetscCall(PetscMalloc1(vicinity->num_cells, &vicinity->cell_input));
+  PetscCall(PetscMalloc1(cs * vicinity->num_cells, &vicinity->cells));
+  for (PetscInt c = 0; c < vicinity->num_cells; c++) {
+    vicinity->cell_input[c] = received[(1 + cs) * c];
+    for (PetscInt a = 0; a < cs; a++) vicinity->cells[cs * c + a] = received[(1 + cs) * c + 1 + a];
+  }
+  PetscCall(PetscFree(received));
+  PetscFunctionReturn(0);
+}
+
+/* From input to local vertex numbers. */
+static PetscErrorCode NumberVertices(EqmVicinity *vicinity)
+{
+  const PetscInt num_entries = vicinity->cell_size * vicinity->num_cells, start = vicinity->layout->rstart;
+  const PetscInt end = vicinity->layout->rend;
+  PetscInt num_ghosts = 0, *ghost, *place;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < num_entries; k++) num_ghosts += vicinity->cells[k] < start || vicinity->cells[k] >= end;
+  PetscCall(PetscMalloc1(num_ghosts, &ghost));
+  num_ghosts = 0;
+  for (PetscInt k = 0; k < num_entries; k++) {
+    if (vicinity->cells[k] < start || vicinity->cells[k] >= end) ghost[num_ghosts++] = vicinity->cells[k];
+  }
+  PetscCall(PetscSortRemoveDupsInt(&num_ghosts, ghost));
+  vicinity->num_owned = end - start;
+  vicinity->num_local = vicinity->num_owned + num_ghosts;
+  PetscCall(PetscMalloc1(vicinity->num_local, &vicinity->input));
+  PetscCall(PetscMalloc1(num_ghosts, &place));
+  for (PetscInt v = 0; v < vicinity->num_owned; v++) vicinity->input[v] = start + v;
+  for (PetscInt g = 0; g < num_ghosts; g++) {
+    vicinity->input[vicinity->num_owned + g] = ghost[g];
+    place[g] = vicinity->num_owned + g;
+  }
+  for (PetscInt k = 0; k < num_entries; k++) {
+    PetscInt *const vertex = &vicinity->cells[k];
+
+    if (*vertex >= start && *vertex < end) {
+      *vertex -= start;
+    } else {
+      PetscInt found;
+
+      PetscCall(PetscFindInt(*vertex, num_ghosts, ghost, &found));
+      *vertex = vicinity->num_owned + found;
+    }
+  }
+  PetscCall(PetscSFCreate(vicinity->comm, &vicinity->ghosts));
+  PetscCall(PetscSFSetGraphLayout(vicinity->ghosts, vicinity->layout, num_ghosts, place, PETSC_COPY_VALUES, ghost));
+  PetscCall(PetscFree(place));
+  PetscCall(PetscFree(ghost));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CollectPositions(EqmSoup soup, EqmVicinity *vicinity)
+{
+  MPI_Datatype point;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * vicinity->num_local, &vicinity->position));
+  PetscCall(PetscArraycpy(vicinity->position, soup->vertices, 3 * vicinity->num_owned));
+  PetscCallMPI(MPI_Type_contiguous(3, MPIU_REAL, &point));
+  PetscCallMPI(MPI_Type_commit(&point));
+  PetscCall(PetscSFBcastBegin(vicinity->ghosts, point, vicinity->position, vicinity->position, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(vicinity->ghosts, point, vicinity->position, vicinity->position, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&point));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MakeStars(EqmVicinity *vicinity)
+{
+  const PetscInt cs = vicinity->cell_size;
+  PetscInt *const start = vicinity->star_start;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(start, vicinity->num_owned + 1));
+  for (PetscInt k = 0; k < cs * vicinity->num_cells; k++) {
+    if (vicinity->cells[k] < vicinity->num_owned) start[vicinity->cells[k] + 1]++;
+  }
+  for (PetscInt v = 0; v < vicinity->num_owned; v++) start[v + 1] += start[v];
+  if (!vicinity->star) PetscCall(PetscMalloc1(start[vicinity->num_owned], &vicinity->star));
+  for (PetscInt k = 0; k < cs * vicinity->num_cells; k++) {
+    if (vicinity->cells[k] < vicinity->num_owned) vicinity->star[start[vicinity->cells[k]]++] = k / cs;
+  }
+  for (PetscInt v = vicinity->num_owned; v > 0; v--) start[v] = start[v - 1];
+  start[0] = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Build the view of a soup: every rank gets all usable cells around the vertices of its slab, and the positions of all
+   their vertices. Free with EqmVicinityReset. Collective. */
+PetscErrorCode EqmVicinityCreate(EqmSoup soup, EqmVicinity *vicinity)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(vicinity, sizeof(*vicinity)));
+  vicinity->comm = soup->comm;
+  vicinity->cell_size = soup->cell_size;
+  PetscCallMPI(MPI_Comm_rank(soup->comm, &vicinity->rank));
+  PetscCallMPI(MPI_Comm_size(soup->comm, &vicinity->size));
+  PetscCall(PetscLayoutCreateFromSizes(soup->comm, soup->vertex_end - soup->vertex_start, soup->num_vertices, 1,
+                                       &vicinity->layout));
+  PetscCall(CollectCells(soup, vicinity));
+  PetscCall(NumberVertices(vicinity));
+  PetscCall(CollectPositions(soup, vicinity));
+  PetscCall(PetscMalloc1(vicinity->num_owned + 1, &vicinity->star_start));
+  PetscCall(MakeStars(vicinity));
+  PetscFunctionReturn(0);
+}
+
+/* Collective. */
+PetscErrorCode EqmVicinityReset(EqmVicinity *vicinity)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(vicinity->input));
+  PetscCall(PetscFree(vicinity->position));
+  PetscCall(PetscFree(vicinity->cells));
+  PetscCall(PetscFree(vicinity->cell_input));
+  PetscCall(PetscFree(vicinity->star_start));
+  PetscCall(PetscFree(vicinity->star));
+  PetscCall(PetscSFDestroy(&vicinity->ghosts));
+  PetscCall(PetscLayoutDestroy(&vicinity->layout));
+  PetscFunctionReturn(0);
+}
+
+/* The vertex of a cell with the lowest input number, as a local number: the cell is this rank's if that is owned here.
+   Not collective. */
+PetscInt EqmVicinityCellOwnerVertex(const EqmVicinity *vicinity, PetscInt cell)
+{
+  const PetscInt *const vertex = vicinity->cells + vicinity->cell_size * cell;
+  PetscInt lowest = vertex[0];
+
+  for (PetscInt a = 1; a < vicinity->cell_size; a++) {
+    if (vicinity->input[vertex[a]] < vicinity->input[lowest]) lowest = vertex[a];
+  }
+  return lowest;
+}
+
+static void SortedVertices(const EqmVicinity *vicinity, PetscInt cell, PetscInt sorted[4])
+{
+  for (PetscInt a = 0; a < vicinity->cell_size; a++) {
+    const PetscInt vertex = vicinity->cells[vicinity->cell_size * cell + a];
+    PetscInt b = a;
+
+    for (; b > 0 && sorted[b - 1] > vertex; b--) sorted[b] = sorted[b - 1];
+    sorted[b] = vertex;
+  }
+}
+
+/* For each cell the first one, in input order, with the same vertices: itself if it has no earlier twin. Every rank
+   that sees one of two twins sees the other, so the ranks agree. Not collective. */
+PetscErrorCode EqmVicinityFindDuplicates(const EqmVicinity *vicinity, PetscInt *first)
+{
+  PetscInt *head, *next;
+
+  PetscFunctionBegin;
+  /* chains of the cells whose lowest two local vertices are (v, w), one v at a time: short unless there are twins */
+  PetscCall(PetscMalloc2(vicinity->num_local, &head, vicinity->num_cells, &next));
+  for (PetscInt v = 0; v < vicinity->num_local; v++) head[v] = -1;
+  for (PetscInt v = 0; v < vicinity->num_owned; v++) {
+    for (PetscInt s = vicinity->star_start[v]; s < vicinity->star_start[v + 1]; s++) {
+      const PetscInt cell = vicinity->star[s];
+      PetscInt sorted[4], other[4], twin;
+
+      SortedVertices(vicinity, cell, sorted);
+      if (sorted[0] != v) continue;
+      for (twin = head[sorted[1]]; twin >= 0; twin = next[twin]) {
+        PetscBool same = PETSC_TRUE;
+
+        SortedVertices(vicinity, twin, other);
+        for (PetscInt a = 2; a < vicinity->cell_size; a++) same = (PetscBool)(same && sorted[a] == other[a]);
+        if (same) break;
+      }
+      first[cell] = twin >= 0 ? twin : cell;
+      if (twin >= 0) continue;
+      next[cell] = head[sorted[1]];
+      head[sorted[1]] = cell;
+    }
+    for (PetscInt s = vicinity->star_start[v]; s < vicinity->star_start[v + 1]; s++) {
+      for (PetscInt a = 0; a < vicinity->cell_size; a++) {
+        head[vicinity->cells[vicinity->cell_size * vicinity->star[s] + a]] = -1;
+      }
+    }
+  }
+  PetscCall(PetscFree2(head, next));
+  PetscFunctionReturn(0);
+}
+
+/* Forget the cells that have an earlier twin; `first` is EqmVicinityFindDuplicates's and shrinks alike. Not collective.
+ */
+PetscErrorCode EqmVicinityDropDuplicates(EqmVicinity *vicinity, PetscInt *first)
+{
+  const PetscInt cs = vicinity->cell_size;
+  PetscInt kept = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < vicinity->num_cells; c++) {
+    if (first[c] != c) continue;
+    vicinity->cell_input[kept] = vicinity->cell_input[c];
+    for (PetscInt a = 0; a < cs; a++) vicinity->cells[cs * kept + a] = vicinity->cells[cs * c + a];
+    kept++;
+  }
+  if (kept != vicinity->num_cells) {
+    vicinity->num_cells = kept;
+    for (PetscInt c = 0; c < kept; c++) first[c] = c;
+    PetscCall(MakeStars(vicinity));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A star forest over cells: roots are the cells that a rank owns, leaves the copies of them on other ranks, both at
+   their local numbers. Collective. */
+PetscErrorCode EqmVicinityCellSF(const EqmVicinity *vicinity, PetscSF *sf)
+{
+  const PetscInt cs = vicinity->cell_size;
+  PetscInt count = 0, *records, *received, num_leaves, *leaf;
+  PetscMPIInt *destination;
+  PetscSFNode *root;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(3 * cs * vicinity->num_cells, &records, cs * vicinity->num_cells, &destination));
+  for (PetscInt c = 0; vicinity->size > 1 && c < vicinity->num_cells; c++) {
+    if (EqmVicinityCellOwnerVertex(vicinity, c) >= vicinity->num_owned) continue;
+    for (PetscInt a = 0; a < cs; a++) {
+      const PetscInt vertex = vicinity->cells[cs * c + a];
+      PetscBool seen = PETSC_FALSE;
+      PetscMPIInt owner;
+
+      if (vertex < vicinity->num_owned) continue;
+      PetscCall(PetscLayoutFindOwner(vicinity->layout, vicinity->input[vertex], &owner));
+      for (PetscInt k = count - 1; k >= 0 && records[3 * k] == vicinity->cell_input[c]; k--) {
+        seen = (PetscBool)(seen || destination[k] == owner);
+      }
+      if (seen) continue;
+      records[3 * count] = vicinity->cell_input[c];
+      records[3 * count + 1] = vicinity->rank;
+      records[3 * count + 2] = c;
+      destination[count++] = owner;
+    }
+  }
+  PetscCall(EqmExchange(vicinity->comm, count, 3, destination, records, &num_leaves, &received));
+  PetscCall(PetscMalloc1(num_leaves, &leaf));
+  PetscCall(PetscMalloc1(num_leaves, &root));
+  for (PetscInt k = 0; k < num_leaves; k++) {
+    PetscCall(PetscFindInt(received[3 * k], vicinity->num_cells, vicinity->cell_input, &leaf[k]));
+    root[k].rank = received[3 * k + 1];
+    root[k].index = received[3 * k + 2];
+  }
+  PetscCall(PetscSFCreate(vicinity->comm, sf));
+  PetscCall(PetscSFSetGraph(*sf, vicinity->num_cells, num_leaves, leaf, PETSC_OWN_POINTER, root, PETSC_OWN_POINTER));
+  PetscCall(PetscFree(received));
+  PetscCall(PetscFree2(records, destination));
+  PetscFunctionReturn(0);
+}
