@@ -104,7 +104,7 @@ typedef struct {
 
 /* Look at a mesh: everything that EqmDiagnosis holds. Never fails for what the mesh is like. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupDiagnose(EqmSoup soup, EqmDiagnosis *diagnosis);
-/* Say what is wrong with the mesh for a target ("disk", "square", "sphere", "ball" or NULL for no target): one line a
+/* Say what is wrong with the mesh for a target ("disk", "square", "sphere", "ball", "conformal", or NULL: any): one line a
    finding, with what, where, how many and what to do. `fatal` tells whether a map is out of the question, `text` is
    written on every rank. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmDiagnosisDescribe(const EqmDiagnosis *diagnosis, const char *target, PetscBool *fatal,

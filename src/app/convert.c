@@ -1,0 +1,72 @@
+/* equimap convert IN OUT: from one mesh format to another, mended or refined on the way. */
+#include "app.h"
+
+typedef struct {
+  PetscBool repair;
+  PetscInt refine;
+} ConvertOptions;
+
+static PetscErrorCode ReadOptions(ConvertOptions *options)
+{
+  PetscFunctionBegin;
+  options->repair = PETSC_FALSE;
+  options->refine = 0;
+  PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Conversion of meshes (convert)", "convert");
+  PetscCall(
+      PetscOptionsBool("-repair",
+                       "mend what is safe to mend (twins, repeated vertices, orientation, cells without an interior "
+                       "vertex); kept vertices keep their numbers",
+                       "convert", options->repair, &options->repair, NULL));
+  PetscCall(PetscOptionsInt("-refine", "split every triangle into 4, every tetrahedron into 8, so many times",
+                            "convert", options->refine, &options->refine, NULL));
+  PetscOptionsEnd();
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PrintUsage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(
+      PETSC_COMM_WORLD,
+      "usage: equimap convert IN OUT [-repair] [-refine TIMES]\n"
+      "The suffix of OUT chooses its format; IN's is seen from its content. Vertices keep their numbers; new ones\n"
+      "come after them.\n"));
+  PetscFunctionReturn(0);
+}
+
+/* Run `equimap convert`. Collective on PETSC_COMM_WORLD. Errors: EQM_ERR_USAGE, and those of EqmSoupRead,
+   EqmSoupRepair, EqmSoupRefine and EqmSoupWrite. */
+PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status)
+{
+  ConvertOptions options;
+  EqmSoup soup;
+
+  PetscFunctionBegin;
+  *status = EQM_STATUS_CONVERGED;
+  PetscCall(ReadOptions(&options));
+  if (line->help) {
+    PetscCall(PrintUsage());
+    PetscFunctionReturn(0);
+  }
+  PetscCall(EqmRejectUnknownOptions(line));
+  if (line->num_arguments != 2) {
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "convert takes two files, IN and OUT, %d given", line->num_arguments);
+  }
+  if (options.refine < 0)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-refine %" PetscInt_FMT ": give 0 or more", options.refine);
+  PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
+  if (options.repair) {
+    EqmRepair repair;
+    PetscInt *parent;
+
+    PetscCall(EqmSoupRepair(&soup, &repair, &parent));
+    PetscCall(PetscFree(parent));
+  }
+  if (options.refine) PetscCall(EqmSoupRefine(&soup, options.refine));
+  PetscCall(EqmSoupWrite(soup, line->argument[1]));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %" PetscInt_FMT " vertices, %" PetscInt_FMT " %s -> %s\n",
+                        line->argument[0], soup->num_vertices, soup->num_cells,
+                        soup->cell_size == 3 ? "triangles" : "tetrahedra", line->argument[1]));
+  PetscCall(EqmSoupDestroy(&soup));
+  PetscFunctionReturn(0);
+}
