@@ -30,12 +30,11 @@ struct _p_EqmMesh {
   PetscReal *shape;       /* per local cell: measure alone, in the mesh's own units */
   PetscReal measure;      /* W: total measure, density included, in the mesh's own units */
 
-  /* Boundary. For surfaces: directed edges with the surface on their left. */
+  /* Boundary. Of surfaces: edges that run with the surface on their left; of solids: triangles that look outward. */
   PetscInt num_boundary_vertices; /* global */
-  PetscInt num_boundary_loops;    /* global; surfaces only */
   PetscBool *on_boundary;         /* per local vertex */
-  PetscInt num_boundary_edges;    /* local: every boundary edge that touches an owned vertex */
-  PetscInt *boundary_edges;       /* 2 * num_boundary_edges, local vertex numbers, directed */
+  PetscInt num_boundary_facets;   /* local: every boundary edge (of tetrahedra: triangle) that touches an owned vertex */
+  PetscInt *boundary_facets;      /* (cell_size - 1) * num_boundary_facets, local vertex numbers, oriented as the boundary */
 
   /* Owner-computes blocks for threads: block b owns the vertices block_vertex[b] .. block_vertex[b+1]-1 and visits the
      cells block_cell[block_start[b]] .. in ascending order; the same for every number of threads. */

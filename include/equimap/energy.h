@@ -1,0 +1,54 @@
+/* Energies of maps: loops over image simplices, the normalised authalic energy, Laplacians, the angle energy.
+
+   Notation of the house: w cell weight (sums to one over the mesh), a signed image measure, A = sum a, ratio r = (a/w)/A.
+   All loops are owner-computes over fixed blocks: the same bits for any number of threads. */
+#ifndef EQUIMAP_ENERGY_H
+#define EQUIMAP_ENERGY_H
+
+#include <equimap/domain.h>
+
+/* What is measured of an image simplex. */
+typedef enum {
+  EQM_MEASURE_AREA2 /* signed area in the plane */
+} EqmMeasureKind;
+
+/* Totals of one look at a map. */
+typedef struct {
+  PetscReal total;    /* A */
+  PetscReal energy;   /* A sum w (r - 1)^2 */
+  PetscReal sd;       /* unweighted standard deviation of r over the cells */
+  PetscReal smallest; /* min a/w: not positive where the map folds */
+  PetscInt64 folds;   /* cells with a <= 0 */
+} EqmImageTotals;
+
+/* Image measure a of every local cell. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmImageMeasure(EqmDomain domain, const EqmPlace *place, PetscReal *a);
+/* Sums over all cells from their image measures. Collective. */
+PETSC_EXTERN PetscErrorCode EqmImageSum(EqmMesh mesh, const PetscReal *a, EqmImageTotals *totals);
+/* gradient_i = sum over cells of slope_cell * d a_cell / d x_i, for owned vertices; `slope` per local cell, `gradient`
+   dim per owned vertex. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const PetscReal *slope, PetscReal *gradient);
+/* First and second derivative of a along the curve with the given ambient velocity and acceleration (NULL: zero), per local
+   cell. Either output may be NULL. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmImageDerivatives(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity,
+                                                const PetscReal *acceleration, PetscReal *first, PetscReal *second);
+
+/* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), METHODS: free of cancellation) and, if wanted, its gradient
+   in degrees of freedom, from dE/da = 2 (r - 1) - E/A. `a` (per local cell) is scratch that returns the image measures.
+   Counts one evaluation. Collective. */
+PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy, Vec gradient);
+
+/* Weights of a Laplacian: per local cell and corner, that of the edge opposite the corner. */
+typedef enum {
+  EQM_LAPLACIAN_UNIFORM,   /* 1/2: every inner edge one */
+  EQM_LAPLACIAN_COTANGENT, /* half the cotangents of the mesh: Dirichlet energy (000 L_S(id)) */
+  EQM_LAPLACIAN_STRETCH    /* L_S of the present image (000 (2d)) */
+} EqmLaplacianKind;
+PETSC_EXTERN PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place, PetscReal *weights);
+/* y = L x for `width` components; x per local vertex, y per owned vertex. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmLaplacianApply(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x, PetscReal *y);
+/* E_D = 1/2 sum x^T L x over all components. Collective. */
+PETSC_EXTERN PetscErrorCode EqmLaplacianEnergy(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x,
+                                               PetscReal *energy);
+
+#endif

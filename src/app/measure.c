@@ -1,0 +1,73 @@
+/* equimap measure MESH MAP: distortion and folds of any map of the mesh. */
+#include "app.h"
+
+static PetscErrorCode PrintStatistics(const char *name, const EqmStatistics *s)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-14s mean %.6g  sd %.6g  min %.6g  25%% %.6g  median %.6g  75%% %.6g  95%% %.6g  max %.6g\n", name, (double)s->mean, (double)s->sd, (double)s->min, (double)s->p25,
+                        (double)s->p50, (double)s->p75, (double)s->p95, (double)s->max));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Print(const EqmDistortion *d, PetscBool surface)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  energy         %.10e   (image measure %.10g)\n  folds          %" PetscInt64_FMT "\n", (double)d->energy, (double)d->image_measure, d->folds));
+  PetscCall(PrintStatistics("ratio", &d->ratio));
+  PetscCall(PrintStatistics("|ratio - 1|", &d->ratio_error));
+  if (!surface) PetscFunctionReturn(0);
+  PetscCall(PrintStatistics("angle error", &d->angle_error));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  quasi-conformal distortion: mean %.6g  max %.6g\n", (double)d->quasiconformal_mean, (double)d->quasiconformal_max));
+  PetscFunctionReturn(0);
+}
+
+/* Measure and report; the map's status: folds or fine. */
+static PetscErrorCode Measure(const EqmCommandLine *line, const char *density, const char *summary, EqmStatus *status)
+{
+  EqmLedger ledger;
+  EqmSoup soup;
+  EqmMesh mesh;
+  EqmMap map;
+  PetscReal *x;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
+  PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
+  if (density[0]) PetscCall(EqmSoupReadDensity(soup, density));
+  PetscCall(EqmMapRead(soup, line->argument[1], &map));
+  PetscCall(EqmMeshCreate(soup, ledger, &mesh));
+  PetscCall(PetscMalloc1(map->dim * mesh->num_local, &x));
+  PetscCall(EqmMeshVerticesFromInput(mesh, soup, map->dim, map->coordinates, x));
+  PetscCall(EqmMapMeasure(map, mesh, x));
+  PetscCall(PetscFree(x));
+  map->status = *status = map->distortion.folds ? EQM_STATUS_FOLDS : EQM_STATUS_CONVERGED;
+  map->energy_initial = map->energy_final = map->distortion.energy;
+  map->num_boundary_vertices = mesh->num_boundary_vertices;
+  PetscCall(PetscStrncpy(map->command, "measure", sizeof(map->command)));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s as a map of %s\n", line->argument[1], line->argument[0]));
+  PetscCall(Print(&map->distortion, (PetscBool)(soup->cell_size == 3)));
+  if (summary[0]) PetscCall(EqmMapWriteSummary(map, summary));
+  PetscCall(EqmMapDestroy(&map));
+  PetscCall(EqmMeshDestroy(&mesh));
+  PetscCall(EqmSoupDestroy(&soup));
+  PetscCall(EqmLedgerDestroy(&ledger));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status)
+{
+  char density[PETSC_MAX_PATH_LEN] = "", summary[PETSC_MAX_PATH_LEN] = "";
+
+  PetscFunctionBegin;
+  PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
+  PetscCall(PetscOptionsString("-density", "a positive weight per cell: measure mass instead of area", NULL, "", density, sizeof(density), NULL));
+  PetscCall(PetscOptionsString("-summary", "write the figures as JSON", NULL, "", summary, sizeof(summary), NULL));
+  PetscOptionsEnd();
+  if (line->help) PetscFunctionReturn(0);
+  PetscCall(EqmRejectUnknownOptions(line));
+  if (line->num_arguments != 2) {
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "equimap measure wants a mesh and a map, got %d arguments; usage: equimap measure MESH MAP", line->num_arguments);
+  }
+  PetscCall(Measure(line, density, summary, status));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,132 @@
+/* CHOLMOD on one rank. Our lower triangle by rows is the upper triangle by columns that CHOLMOD reads in place. */
+#include "linalg/linalg.h"
+#include <cholmod.h>
+
+#if defined(PETSC_USE_64BIT_INDICES)
+#define CHOLMOD(name) cholmod_l_##name
+#else
+#define CHOLMOD(name) cholmod_##name
+#endif
+
+typedef struct {
+  cholmod_common common;
+  cholmod_sparse view; /* of PETSc's arrays, taken for the time of a call */
+  cholmod_factor *factor;
+  cholmod_dense *solution, *work_y, *work_e;
+} Cholmod;
+
+/* Look at the matrix as CHOLMOD sees it. Give the view back with RestoreView. */
+static PetscErrorCode GetView(EqmLinear linear, Mat *matrix)
+{
+  Cholmod *const c = linear->data;
+  const PetscInt *start, *column;
+  PetscScalar *value;
+  PetscInt n;
+  PetscBool done;
+
+  PetscFunctionBegin;
+  PetscCall(EqmAssemblyGetMat(linear->assembly, matrix));
+  PetscCall(MatGetRowIJ(*matrix, 0, PETSC_FALSE, PETSC_FALSE, &n, &start, &column, &done));
+  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no access to the rows of a matrix");
+  PetscCall(MatSeqAIJGetArray(*matrix, &value));
+  c->view = (cholmod_sparse){.nrow = (size_t)n, .ncol = (size_t)n, .nzmax = (size_t)start[n], .p = (void *)start, .i = (void *)column,
+                             .x = value, .stype = 1, .itype = c->common.itype, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE,
+                             .sorted = 1, .packed = 1};
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RestoreView(EqmLinear linear, Mat matrix)
+{
+  Cholmod *const c = linear->data;
+  const PetscInt *start = c->view.p, *column = c->view.i;
+  PetscScalar *value = c->view.x;
+  PetscInt n = (PetscInt)c->view.nrow;
+  PetscBool done;
+
+  PetscFunctionBegin;
+  PetscCall(MatSeqAIJRestoreArray(matrix, &value));
+  PetscCall(MatRestoreRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &n, &start, &column, &done));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
+{
+  Cholmod *const c = linear->data;
+  PetscInt *order;
+  Mat matrix;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(linear->num_unknowns, &order));
+  for (PetscInt k = 0; k < linear->num_unknowns; k++) order[position[k]] = k;
+  PetscCall(GetView(linear, &matrix));
+  c->common.nmethods = 1;
+  c->common.method[0].ordering = CHOLMOD_GIVEN;
+  c->factor = CHOLMOD(analyze_p)(&c->view, order, NULL, 0, &c->common);
+  PetscCall(RestoreView(linear, matrix));
+  PetscCall(PetscFree(order));
+  PetscCheck(c->factor, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD's analysis failed (status %d): too little memory for this mesh on one rank; use more", c->common.status);
+  linear->factor_nonzeros = c->common.lnz;
+  linear->factor_flops = c->common.fl;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
+{
+  Cholmod *const c = linear->data;
+  Mat matrix;
+
+  PetscFunctionBegin;
+  PetscCall(GetView(linear, &matrix));
+  CHOLMOD(factorize)(&c->view, c->factor, &c->common);
+  PetscCall(RestoreView(linear, matrix));
+  PetscCheck(c->common.status >= 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD's factorisation failed (status %d): too little memory for this mesh on one rank; use more", c->common.status);
+  *success = (PetscBool)(c->common.status == CHOLMOD_OK && c->factor->minor == c->factor->n);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
+{
+  Cholmod *const c = linear->data;
+  const size_t n = (size_t)linear->num_unknowns;
+  cholmod_dense rhs = {.nrow = n, .ncol = (size_t)num_rhs, .nzmax = n * (size_t)num_rhs, .d = n, .x = (void *)b, .xtype = CHOLMOD_REAL,
+                       .dtype = CHOLMOD_DOUBLE};
+
+  PetscFunctionBegin;
+  PetscCheck(CHOLMOD(solve2)(CHOLMOD_A, c->factor, &rhs, NULL, &c->solution, NULL, &c->work_y, &c->work_e, &c->common), PETSC_COMM_SELF,
+             PETSC_ERR_LIB, "CHOLMOD's solve failed (status %d)", c->common.status);
+  PetscCall(PetscArraycpy(x, (PetscReal *)c->solution->x, linear->num_unknowns * num_rhs));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(EqmLinear linear)
+{
+  Cholmod *const c = linear->data;
+
+  PetscFunctionBegin;
+  CHOLMOD(free_factor)(&c->factor, &c->common);
+  CHOLMOD(free_dense)(&c->solution, &c->common);
+  CHOLMOD(free_dense)(&c->work_y, &c->common);
+  CHOLMOD(free_dense)(&c->work_e, &c->common);
+  CHOLMOD(finish)(&c->common);
+  PetscCall(PetscFree(linear->data));
+  PetscFunctionReturn(0);
+}
+
+/* Make `linear` one of CHOLMOD's. Not collective: one rank. */
+PetscErrorCode EqmLinearSetUpCholmod(EqmLinear linear)
+{
+  Cholmod *c;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&c));
+  linear->data = c;
+  linear->analyse = Analyse;
+  linear->factor = Factor;
+  linear->solve = Solve;
+  linear->destroy = Destroy;
+  CHOLMOD(start)(&c->common);
+  c->common.print = 0;
+  c->common.supernodal = CHOLMOD_SUPERNODAL;
+  c->common.quick_return_if_not_posdef = 1;
+  PetscFunctionReturn(0);
+}

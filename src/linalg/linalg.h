@@ -1,0 +1,71 @@
+/* Sparse matrices of meshes and what solves with them. */
+#ifndef EQM_LINALG_H
+#define EQM_LINALG_H
+
+#include <petscmat.h>
+#include <equimap/mesh.h>
+
+/* ---- unknowns: how many each vertex has and where they stand in the global vector */
+typedef struct {
+  PetscInt num_owned;         /* unknowns of this rank */
+  PetscInt first;             /* global number of the first */
+  const PetscInt *start;      /* per local vertex: global number of its first unknown */
+  const unsigned char *count; /* per local vertex */
+} EqmUnknowns;
+
+/* ---- assembly */
+/* Fill the dense symmetric matrix of one cell, row by row over the unknowns of its corners in order. Called by several
+   threads at once, for different cells. */
+typedef void (*EqmCellMatrix)(void *context, PetscInt cell, PetscReal *matrix);
+enum { EQM_MOST_CELL_UNKNOWNS = 12 };
+
+/* Direct solvers take the lower triangle, multigrid needs both. */
+typedef enum { EQM_STORE_LOWER, EQM_STORE_FULL } EqmStorage;
+
+typedef struct _p_EqmAssembly *EqmAssembly;
+PETSC_INTERN PetscErrorCode EqmAssemblyCreate(EqmMesh mesh, const EqmUnknowns *unknowns, EqmStorage storage, EqmAssembly *assembly);
+PETSC_INTERN PetscErrorCode EqmAssemblyDestroy(EqmAssembly *assembly);
+PETSC_INTERN PetscErrorCode EqmAssemblyFill(EqmAssembly assembly, EqmCellMatrix cell_matrix, void *context);
+PETSC_INTERN PetscErrorCode EqmAssemblyGetMat(EqmAssembly assembly, Mat *matrix);
+
+/* ---- fill-reducing order of the vertices, by METIS, made once for a mesh and shared by all its matrices */
+typedef struct _p_EqmOrdering *EqmOrdering;
+PETSC_INTERN PetscErrorCode EqmOrderingCreate(EqmMesh mesh, EqmOrdering *ordering);
+PETSC_INTERN PetscErrorCode EqmOrderingDestroy(EqmOrdering *ordering);
+/* On rank 0 (NULL elsewhere): position of every unknown in the elimination, global numbering; PetscFree it. Collective. */
+PETSC_INTERN PetscErrorCode EqmOrderingOfUnknowns(EqmOrdering ordering, const EqmUnknowns *unknowns, PetscInt **position);
+
+/* ---- solvers */
+typedef enum { EQM_SOLVER_AUTO, EQM_SOLVER_CHOLMOD, EQM_SOLVER_MUMPS, EQM_SOLVER_MULTIGRID } EqmSolverKind;
+PETSC_INTERN const char *const EqmSolverKinds[];
+
+/* A solver for one symmetric positive definite matrix whose values change and whose pattern stays. */
+typedef struct _p_EqmLinear *EqmLinear;
+struct _p_EqmLinear {
+  EqmMesh mesh;
+  EqmSolverKind kind;
+  PetscBool coupled; /* counts as a coupled factorisation */
+  PetscInt num_owned, num_unknowns;
+  EqmUnknowns unknowns;
+  EqmAssembly assembly;
+  PetscReal factor_nonzeros, factor_flops; /* of the last factorisation; 0 while unknown */
+  void *data;
+  PetscErrorCode (*analyse)(EqmLinear, const PetscInt *position);
+  PetscErrorCode (*factor)(EqmLinear, PetscBool *success);
+  PetscErrorCode (*solve)(EqmLinear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
+  PetscErrorCode (*destroy)(EqmLinear);
+};
+
+PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled,
+                                            EqmLinear *linear);
+PETSC_INTERN PetscErrorCode EqmLinearDestroy(EqmLinear *linear);
+PETSC_INTERN PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context, PetscReal diagonal_factor,
+                                            PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
+
+/* The kinds fill in the operations. */
+PETSC_INTERN PetscErrorCode EqmLinearSetUpCholmod(EqmLinear linear);
+PETSC_INTERN PetscErrorCode EqmLinearSetUpMumps(EqmLinear linear);
+PETSC_INTERN PetscErrorCode EqmLinearSetUpMultigrid(EqmLinear linear);
+
+#endif

@@ -1,0 +1,9 @@
+/* Statistics of a distributed sample. */
+#ifndef EQM_QUANTILE_H
+#define EQM_QUANTILE_H
+
+#include <equimap/map.h>
+
+PETSC_INTERN PetscErrorCode EqmStatisticsOf(MPI_Comm comm, PetscInt n, PetscReal *sample, EqmStatistics *statistics);
+
+#endif

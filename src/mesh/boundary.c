@@ -1,0 +1,221 @@
+/* The boundary: its facets, its vertices, and for a disk-type surface the order and arc length of its loop. */
+#include "mesh/build.h"
+
+/* The facet opposite a corner, oriented as the boundary of a positively oriented cell. */
+static const PetscInt facet_of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+static const PetscInt facet_of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+static const PetscInt *FacetCorners(PetscInt cell_size, PetscInt opposite)
+{
+  return cell_size == 3 ? facet_of_triangle[opposite] : facet_of_tetrahedron[opposite];
+}
+
+/* The facet's vertices in ascending order; returns whether one of them is owned. */
+static PetscBool FacetKey(EqmMesh mesh, PetscInt cell, PetscInt opposite, PetscInt key[3])
+{
+  const PetscInt fs = mesh->cell_size - 1, *const corner = FacetCorners(mesh->cell_size, opposite);
+
+  for (PetscInt k = 0; k < fs; k++) {
+    PetscInt v = mesh->cells[mesh->cell_size * cell + corner[k]], q = k;
+    for (; q > 0 && key[q - 1] > v; q--) key[q] = key[q - 1];
+    key[q] = v;
+  }
+  return (PetscBool)(key[0] < mesh->num_owned);
+}
+
+/* Facets, as (cell, corner), grouped by their smallest vertex. Facets of ghosts alone are left out: their other cell may be
+   elsewhere. */
+static PetscErrorCode GroupFacets(EqmMesh mesh, PetscInt **start, PetscInt **facet)
+{
+  PetscInt *first, *list, key[3];
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(mesh->num_owned + 2, &first));
+  for (PetscInt k = 0; k < mesh->cell_size * mesh->num_local_cells; k++) {
+    if (FacetKey(mesh, k / mesh->cell_size, k % mesh->cell_size, key)) first[key[0] + 2]++;
+  }
+  for (PetscInt v = 0; v < mesh->num_owned; v++) first[v + 2] += first[v + 1];
+  PetscCall(PetscMalloc1(first[mesh->num_owned + 1], &list));
+  for (PetscInt k = 0; k < mesh->cell_size * mesh->num_local_cells; k++) {
+    if (FacetKey(mesh, k / mesh->cell_size, k % mesh->cell_size, key)) list[first[key[0] + 1]++] = k;
+  }
+  *start = first;
+  *facet = list;
+  PetscFunctionReturn(0);
+}
+
+/* Find the facets of one cell only and the vertices on them. Collective. */
+PetscErrorCode EqmMeshFindBoundary(EqmMesh mesh)
+{
+  const PetscInt cs = mesh->cell_size, fs = cs - 1;
+  PetscInt *start, *facet, *kept, count = 0, num_owned_boundary = 0;
+  PetscReal *flag;
+
+  PetscFunctionBegin;
+  PetscCall(GroupFacets(mesh, &start, &facet));
+  PetscCall(PetscMalloc1(start[mesh->num_owned], &kept));
+  PetscCall(PetscMalloc1(mesh->num_local, &mesh->on_boundary));
+  PetscCall(PetscCalloc1(mesh->num_local, &flag));
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    for (PetscInt q = start[v]; q < start[v + 1]; q++) {
+      PetscInt key[3], other[3];
+      PetscBool alone = PETSC_TRUE;
+      FacetKey(mesh, facet[q] / cs, facet[q] % cs, key);
+      for (PetscInt r = start[v]; r < start[v + 1] && alone; r++) {
+        if (r == q) continue;
+        FacetKey(mesh, facet[r] / cs, facet[r] % cs, other);
+        alone = (PetscBool)(key[1] != other[1] || (fs == 3 && key[2] != other[2]));
+      }
+      if (alone) kept[count++] = facet[q];
+    }
+  }
+  PetscCall(PetscMalloc1(fs * count, &mesh->boundary_facets));
+  mesh->num_boundary_facets = count;
+  for (PetscInt k = 0; k < count; k++) {
+    const PetscInt *const corner = FacetCorners(cs, kept[k] % cs);
+    for (PetscInt a = 0; a < fs; a++) {
+      const PetscInt v = mesh->cells[cs * (kept[k] / cs) + corner[a]];
+      mesh->boundary_facets[fs * k + a] = v;
+      flag[v] = 1.;
+    }
+  }
+  PetscCall(EqmMeshUpdateGhosts(mesh, 1, flag));
+  for (PetscInt v = 0; v < mesh->num_local; v++) mesh->on_boundary[v] = (PetscBool)(flag[v] > 0.);
+  for (PetscInt v = 0; v < mesh->num_owned; v++) num_owned_boundary += mesh->on_boundary[v];
+  PetscCall(MPIU_Allreduce(&num_owned_boundary, &mesh->num_boundary_vertices, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscCall(PetscFree(flag));
+  PetscCall(PetscFree(start));
+  PetscCall(PetscFree(facet));
+  PetscCall(PetscFree(kept));
+  PetscFunctionReturn(0);
+}
+
+/* One boundary edge as it travels: tail, head (global numbers), input number of the tail. */
+typedef struct {
+  PetscInt tail, head, input;
+  PetscReal length;
+} LoopEdge;
+
+static int CompareTails(const void *a, const void *b)
+{
+  const PetscInt s = ((const LoopEdge *)a)->tail, t = ((const LoopEdge *)b)->tail;
+  return (s > t) - (s < t);
+}
+
+/* Walk along the loop: `place` and `arc` of each edge's tail, the edges sorted by tail. */
+static PetscErrorCode WalkLoop(PetscInt n, const LoopEdge *edge, PetscInt *place, PetscReal *arc, PetscBool *closed)
+{
+  PetscInt first = 0, current, *tail;
+  PetscReal length = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &tail));
+  for (PetscInt e = 0; e < n; e++) {
+    tail[e] = edge[e].tail;
+    place[e] = -1;
+    if (edge[e].input < edge[first].input) first = e;
+  }
+  current = first;
+  for (PetscInt k = 0; k < n && current >= 0 && place[current] < 0; k++) {
+    place[current] = k;
+    arc[current] = length;
+    length += edge[current].length;
+    PetscCall(PetscFindInt(edge[current].head, n, tail, &current));
+  }
+  *closed = (PetscBool)(n > 0 && current == first);
+  for (PetscInt e = 0; e < n; e++) {
+    *closed = (PetscBool)(*closed && place[e] >= 0);
+    arc[e] /= length;
+  }
+  PetscCall(PetscFree(tail));
+  PetscFunctionReturn(0);
+}
+
+/* Order the loop's edges on rank 0, which holds n_B edges for this moment, and hand place and arc length back in the
+   order in which the edges came. */
+static PetscErrorCode OrderLoopOnRoot(EqmMesh mesh, PetscInt n, LoopEdge *mine, PetscInt *place, PetscReal *arc)
+{
+  PetscMPIInt *count, *start, num_mine, width = (PetscMPIInt)sizeof(LoopEdge);
+  LoopEdge *all = NULL;
+  PetscReal *answer, *all_answers = NULL;
+  PetscBool closed = PETSC_TRUE;
+  MPI_Datatype edge_type;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(mesh->size, &count, mesh->size + 1, &start));
+  PetscCall(PetscMPIIntCast(n, &num_mine));
+  PetscCallMPI(MPI_Allgather(&num_mine, 1, MPI_INT, count, 1, MPI_INT, mesh->comm));
+  start[0] = 0;
+  for (PetscMPIInt p = 0; p < mesh->size; p++) start[p + 1] = start[p] + count[p];
+  PetscCallMPI(MPI_Type_contiguous(width, MPI_BYTE, &edge_type));
+  PetscCallMPI(MPI_Type_commit(&edge_type));
+  PetscCall(PetscMalloc1(2 * n, &answer));
+  if (mesh->rank == 0) PetscCall(PetscMalloc2(start[mesh->size], &all, 2 * start[mesh->size], &all_answers));
+  PetscCallMPI(MPI_Gatherv(mine, num_mine, edge_type, all, count, start, edge_type, 0, mesh->comm));
+  PetscCallMPI(MPI_Type_free(&edge_type));
+  PetscCallMPI(MPI_Type_contiguous(2, MPIU_REAL, &edge_type));
+  PetscCallMPI(MPI_Type_commit(&edge_type));
+  if (mesh->rank == 0) {
+    const PetscInt total = start[mesh->size];
+    PetscInt *all_place;
+    PetscReal *all_arc;
+    LoopEdge *sorted;
+    PetscCall(PetscMalloc3(total, &all_place, total, &all_arc, total, &sorted));
+    PetscCall(PetscArraycpy(sorted, all, total));
+    qsort(sorted, (size_t)total, sizeof(LoopEdge), CompareTails);
+    PetscCall(WalkLoop(total, sorted, all_place, all_arc, &closed));
+    for (PetscInt e = 0; e < total; e++) { /* back to the order of arrival */
+      const LoopEdge *const found = bsearch(&all[e], sorted, (size_t)total, sizeof(LoopEdge), CompareTails);
+      all_answers[2 * e] = (PetscReal)all_place[found - sorted];
+      all_answers[2 * e + 1] = all_arc[found - sorted];
+    }
+    PetscCall(PetscFree3(all_place, all_arc, sorted));
+  }
+  PetscCallMPI(MPI_Scatterv(all_answers, count, start, edge_type, answer, num_mine, edge_type, 0, mesh->comm));
+  PetscCallMPI(MPI_Type_free(&edge_type));
+  PetscCallMPI(MPI_Bcast(&closed, 1, MPIU_BOOL, 0, mesh->comm));
+  if (!closed) EqmFail(mesh->comm, EQM_ERR_MESH, "the boundary is not one closed loop; 'equimap check' says what is wrong");
+  for (PetscInt e = 0; e < n; e++) {
+    place[e] = (PetscInt)answer[2 * e];
+    arc[e] = answer[2 * e + 1];
+  }
+  if (mesh->rank == 0) PetscCall(PetscFree2(all, all_answers));
+  PetscCall(PetscFree(answer));
+  PetscCall(PetscFree2(count, start));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMeshBoundaryLoop(EqmMesh mesh, PetscInt *place, PetscReal *arc_length)
+{
+  const PetscInt num_facets = mesh->num_boundary_facets;
+  PetscInt n = 0, *edge_place;
+  PetscReal *edge_arc, *both;
+  LoopEdge *edge;
+
+  PetscFunctionBegin;
+  PetscCheck(mesh->cell_size == 3, mesh->comm, PETSC_ERR_ARG_WRONG, "only the boundary of a surface is a loop");
+  PetscCall(PetscMalloc4(num_facets, &edge, num_facets, &edge_place, num_facets, &edge_arc, 2 * mesh->num_local, &both));
+  for (PetscInt e = 0; e < num_facets; e++) {
+    const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
+    const PetscReal *const p = mesh->position + 3 * i, *const q = mesh->position + 3 * j;
+    if (i >= mesh->num_owned) continue;
+    edge[n].tail = mesh->global[i];
+    edge[n].head = mesh->global[j];
+    edge[n].input = mesh->vertex_input[i];
+    edge[n++].length = PetscSqrtReal(PetscSqr(p[0] - q[0]) + PetscSqr(p[1] - q[1]) + PetscSqr(p[2] - q[2]));
+  }
+  PetscCall(OrderLoopOnRoot(mesh, n, edge, edge_place, edge_arc));
+  for (PetscInt k = 0; k < 2 * mesh->num_local; k++) both[k] = -1.;
+  for (PetscInt e = 0; e < n; e++) {
+    const PetscInt i = edge[e].tail - mesh->vertex_start;
+    both[2 * i] = (PetscReal)edge_place[e];
+    both[2 * i + 1] = edge_arc[e];
+  }
+  PetscCall(EqmMeshUpdateGhosts(mesh, 2, both));
+  for (PetscInt i = 0; i < mesh->num_local; i++) {
+    place[i] = (PetscInt)both[2 * i];
+    arc_length[i] = both[2 * i + 1];
+  }
+  PetscCall(PetscFree4(edge, edge_place, edge_arc, both));
+  PetscFunctionReturn(0);
+}

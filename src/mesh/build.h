@@ -1,0 +1,35 @@
+/* The steps from a soup to a distributed mesh; private to this room. */
+#ifndef EQM_MESH_BUILD_H
+#define EQM_MESH_BUILD_H
+
+#include <equimap/mesh.h>
+
+/* The cells around the vertices that a rank owns, as they arrive: each with its input number, its vertices in input
+   numbering and their owners. */
+typedef struct {
+  PetscInt cell_size, num_cells;
+  PetscInt *records; /* per cell: input cell number, cell_size vertices, cell_size owners */
+  PetscInt width;    /* integers per record */
+} EqmStars;
+
+/* A graph in compressed rows. */
+typedef struct {
+  PetscInt num_rows;
+  PetscInt *start;    /* num_rows + 1 */
+  PetscInt *neighbor; /* start[num_rows] */
+} EqmGraph;
+
+PETSC_INTERN PetscErrorCode EqmStarsCollect(EqmSoup soup, const PetscInt *owner_of_slab, EqmStars *stars);
+PETSC_INTERN PetscErrorCode EqmStarsReset(EqmStars *stars);
+PETSC_INTERN PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *vertices, PetscSF *sf);
+PETSC_INTERN PetscErrorCode EqmSoupSlabOwner(EqmSoup soup, PetscInt **starts);
+PETSC_INTERN PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells, const PetscInt *cells,
+                                            EqmGraph *graph);
+PETSC_INTERN PetscErrorCode EqmGraphReset(EqmGraph *graph);
+PETSC_INTERN PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *owner_of_slab);
+PETSC_INTERN PetscErrorCode EqmOrderCuthillMcKee(const EqmGraph *graph, PetscInt *new_number);
+PETSC_INTERN PetscErrorCode EqmMeshFindBoundary(EqmMesh mesh);
+PETSC_INTERN PetscErrorCode EqmMeshMakeBlocks(EqmMesh mesh);
+PETSC_INTERN PetscErrorCode EqmMeshMeasure(EqmMesh mesh, const PetscReal *cell_density);
+
+#endif

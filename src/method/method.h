@@ -1,0 +1,97 @@
+/* What the loop and the methods know of each other. */
+#ifndef EQM_METHOD_H
+#define EQM_METHOD_H
+
+#include <equimap/solver.h>
+#include "linalg/linalg.h"
+
+/* What a step came to. */
+typedef enum {
+  EQM_STEP_TAKEN,
+  EQM_STEP_CONVERGED, /* the method's own test is met */
+  EQM_STEP_STALLED    /* no step decreases the function any more */
+} EqmStep;
+
+/* A method: one row in the table of methods.c, one file. */
+typedef struct {
+  const char *name, *purpose;
+  const char *default_start; /* unless -start says otherwise */
+  PetscInt default_max_it;
+  PetscReal default_energy_rtol;
+  PetscErrorCode (*options)(EqmSolver, PetscOptionItems *); /* may be NULL */
+  PetscErrorCode (*set_up)(EqmSolver);                      /* solver->place holds the start */
+  PetscErrorCode (*step)(EqmSolver, EqmStep *);             /* leaves place, image, step_length, gradient_norm, objective */
+  PetscErrorCode (*destroy)(EqmSolver);
+} EqmMethod;
+
+typedef struct {
+  char method[32], start[32];
+  PetscInt max_it, max_factorizations, start_steps;
+  PetscReal energy_rtol, energy_target, gradient_tol, wall_time, balance;
+  PetscInt stagnation; /* iterations over which energy_rtol is looked at */
+  PetscBool quiet, has_corners;
+  PetscInt corners[4];
+  /* ncg */
+  PetscInt ncg_refresh;
+  PetscEnum ncg_beta; /* an EqmNcgBeta */
+  PetscBool ncg_guard;
+} EqmSettings;
+
+struct _p_EqmSolver {
+  MPI_Comm comm;
+  EqmMesh mesh;
+  EqmDomain domain;
+  EqmOrdering ordering;
+  EqmLinear scalar; /* one unknown per vertex: Laplacians of all kinds */
+  PetscInt *scalar_start;
+  unsigned char *scalar_count;
+  char target[16];
+  EqmSettings settings;
+  const EqmMethod *method;
+  void *data; /* the method's own */
+
+  EqmPlace place;         /* the present map */
+  PetscReal *image;       /* its image measures, per local cell */
+  EqmImageTotals totals;  /* and their sums */
+  PetscInt iteration;
+  PetscReal step_length, gradient_norm;
+  PetscReal objective; /* what the method minimises; convergence is judged by it */
+  PetscReal *objectives;  /* of every iteration, num_history long */
+  EqmHistoryRow *history;
+  PetscInt num_history, most_history;
+  PetscReal last_shown; /* seconds when the last row was printed */
+  EqmStatus status;
+  char message[EQM_MESSAGE_MAX];
+};
+
+PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLm;
+PETSC_INTERN PetscErrorCode EqmMethodFind(const char *name, const EqmMethod **method);
+PETSC_INTERN PetscErrorCode EqmMethodNames(char *text, size_t length);
+PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
+
+/* Refresh solver->image and solver->totals from solver->place. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverLook(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmMonitorBegin(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmMonitorRow(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmMonitorEnd(EqmSolver solver);
+
+/* ---- scalar Laplacians on groups of vertices (src/start/dirichlet.c) */
+enum { EQM_GROUP_FIXED = -1 };
+/* Factor the Laplacian with the given weights (3 per local cell), restricted to groups: entries between vertices of
+   different groups are dropped, rows of fixed vertices are identities. `group` per local vertex. Collective. */
+PETSC_INTERN PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group);
+/* Solve with the factored Laplacian; columns of num_owned each. Collective. */
+PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *columns);
+/* Coordinates that are free of constraint solve L x = 0 with all others held: the discrete harmonic map for `weights`.
+   `to` gets the result; ghosts up to date. Collective. */
+PETSC_INTERN PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const EqmPlace *from, EqmPlace *to);
+
+/* ---- first maps (src/start/start.c) */
+PETSC_INTERN PetscErrorCode EqmStartFind(const char *name);
+PETSC_INTERN PetscErrorCode EqmStartNames(char *text, size_t length);
+PETSC_INTERN PetscErrorCode EqmStart(EqmSolver solver);
+/* The largest step in (0, 1] along a straight motion that keeps cells of positive area positive, with a margin: .9 of the
+   first zero. `velocity` per local vertex. Collective. */
+PETSC_INTERN PetscErrorCode EqmStepToFold(EqmSolver solver, const PetscReal *velocity, PetscReal *step);
+
+#endif

@@ -1,0 +1,227 @@
+/* Preconditioned nonlinear conjugate gradients (000 Algorithm 1), with refreshed preconditioner, other betas and a guard. */
+#include "method/method.h"
+
+enum { BETA_FR, BETA_PR, BETA_HZ };
+static const char *const ncg_betas[] = {"fletcher-reeves", "polak-ribiere", "hager-zhang", "EqmNcgBeta", "EQM_NCG_", NULL};
+
+typedef struct {
+  Vec gradient, preconditioned, direction, old_gradient, old_preconditioned;
+  PetscReal *weights, *columns, *image;
+  signed char *group;
+  EqmPlace trial;
+  PetscReal alpha;
+} Ncg;
+
+/* M = blkdiag(L_II, L_BB) of the present map (000 section 3.2): one factor, for the two blocks do not touch. */
+static PetscErrorCode RefreshPreconditioner(EqmSolver solver)
+{
+  Ncg *const ncg = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, ncg->weights));
+  PetscCall(EqmGroupFactor(solver, ncg->weights, ncg->group));
+  PetscFunctionReturn(0);
+}
+
+/* h = M^-1 g, degree of freedom by degree of freedom: angles and slides go with the first coordinate. */
+static PetscErrorCode Precondition(EqmSolver solver, Vec g, Vec h)
+{
+  Ncg *const ncg = solver->data;
+  const EqmDomain domain = solver->domain;
+  const PetscInt n = solver->mesh->num_owned;
+  const PetscScalar *from;
+  PetscScalar *to;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(g, &from));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < 2; k++) {
+      ncg->columns[k * n + v] = k < domain->dof_count[v] ? from[domain->dof_start[v] - domain->dof_first + k] : 0.;
+    }
+  }
+  PetscCall(VecRestoreArrayRead(g, &from));
+  PetscCall(EqmGroupSolve(solver, 2, ncg->columns));
+  PetscCall(VecGetArrayWrite(h, &to));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < domain->dof_count[v]; k++) to[domain->dof_start[v] - domain->dof_first + k] = ncg->columns[k * n + v];
+  }
+  PetscCall(VecRestoreArrayWrite(h, &to));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetUp(EqmSolver solver)
+{
+  const EqmMesh mesh = solver->mesh;
+  Ncg *ncg;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&ncg));
+  solver->data = ncg;
+  PetscCall(PetscMalloc4(3 * mesh->num_local_cells, &ncg->weights, 2 * mesh->num_owned, &ncg->columns, mesh->num_local, &ncg->group,
+                         mesh->num_local_cells, &ncg->image));
+  for (PetscInt v = 0; v < mesh->num_local; v++) {
+    ncg->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
+  }
+  PetscCall(EqmDomainCreateVec(solver->domain, &ncg->gradient));
+  PetscCall(VecDuplicate(ncg->gradient, &ncg->preconditioned));
+  PetscCall(VecDuplicate(ncg->gradient, &ncg->direction));
+  PetscCall(VecDuplicate(ncg->gradient, &ncg->old_gradient));
+  PetscCall(VecDuplicate(ncg->gradient, &ncg->old_preconditioned));
+  PetscCall(EqmPlaceCreate(solver->domain, &ncg->trial));
+  PetscCall(RefreshPreconditioner(solver));
+  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, ncg->gradient));
+  PetscCall(VecNorm(ncg->gradient, NORM_2, &solver->gradient_norm));
+  PetscCall(Precondition(solver, ncg->gradient, ncg->preconditioned));
+  PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
+  PetscCall(VecScale(ncg->direction, -1.));
+  ncg->alpha = 2.; /* 000 section 3.1 */
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(EqmSolver solver)
+{
+  Ncg *const ncg = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree4(ncg->weights, ncg->columns, ncg->group, ncg->image));
+  PetscCall(VecDestroy(&ncg->gradient));
+  PetscCall(VecDestroy(&ncg->preconditioned));
+  PetscCall(VecDestroy(&ncg->direction));
+  PetscCall(VecDestroy(&ncg->old_gradient));
+  PetscCall(VecDestroy(&ncg->old_preconditioned));
+  PetscCall(EqmPlaceDestroy(&ncg->trial));
+  PetscCall(PetscFree(solver->data));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TryStep(EqmSolver solver, PetscReal alpha, PetscReal *energy)
+{
+  Ncg *const ncg = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmDomainMove(solver->domain, &solver->place, alpha, ncg->direction, &ncg->trial));
+  PetscCall(EqmAuthalicEnergy(solver->domain, &ncg->trial, ncg->image, energy, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* 000 (18): the minimum of the parabola through Phi(0), Phi'(0) and Phi at the previous step length. Where the parabola opens
+   downward, the previous length is doubled. */
+static PetscErrorCode ParabolaStep(EqmSolver solver, PetscReal slope, PetscReal *alpha)
+{
+  Ncg *const ncg = solver->data;
+  PetscReal energy, curvature;
+
+  PetscFunctionBegin;
+  PetscCall(TryStep(solver, ncg->alpha, &energy));
+  curvature = energy - solver->objective - ncg->alpha * slope;
+  *alpha = curvature > 0. ? -ncg->alpha * ncg->alpha * slope / (2. * curvature) : 2. * ncg->alpha;
+  PetscFunctionReturn(0);
+}
+
+/* What the convergence theorem takes for granted and (18) does not give: sufficient decrease and an ordered boundary. The
+   step is shortened until both hold; `alpha` 0 if none does. */
+static PetscErrorCode Safeguard(EqmSolver solver, PetscReal slope, PetscReal *alpha)
+{
+  Ncg *const ncg = solver->data;
+  enum { MOST_CUTS = 30 };
+
+  PetscFunctionBegin;
+  for (PetscInt cut = 0; cut < MOST_CUTS; cut++) {
+    PetscReal energy;
+    PetscBool in_order;
+    PetscCall(EqmDomainMove(solver->domain, &solver->place, *alpha, ncg->direction, &ncg->trial));
+    PetscCall(EqmDomainBoundaryInOrder(solver->domain, &ncg->trial, &in_order));
+    PetscCall(EqmAuthalicEnergy(solver->domain, &ncg->trial, ncg->image, &energy, NULL));
+    if (in_order && energy <= solver->objective + 1e-4 * *alpha * slope) PetscFunctionReturn(0);
+    const PetscReal curvature = energy - solver->objective - *alpha * slope, parabola = -*alpha * *alpha * slope / (2. * curvature);
+    *alpha = in_order && curvature > 0. ? PetscMin(.5 * *alpha, PetscMax(.1 * *alpha, parabola)) : .5 * *alpha;
+  }
+  *alpha = 0.;
+  PetscFunctionReturn(0);
+}
+
+/* beta of 000 (19b), or of Polak and Ribiere (never negative), or of Hager and Zhang. */
+static PetscErrorCode ComputeBeta(EqmSolver solver, PetscReal old_product, PetscReal *beta)
+{
+  Ncg *const ncg = solver->data;
+  PetscReal product, cross;
+
+  PetscFunctionBegin;
+  PetscCall(VecDot(ncg->preconditioned, ncg->gradient, &product));
+  *beta = product / old_product;
+  if ((int)solver->settings.ncg_beta == BETA_PR) {
+    PetscCall(VecDot(ncg->preconditioned, ncg->old_gradient, &cross));
+    *beta = PetscMax(0., (product - cross) / old_product);
+  } else if ((int)solver->settings.ncg_beta == BETA_HZ) {
+    PetscReal dy, yh, yy, dg;
+    PetscCall(VecAYPX(ncg->old_gradient, -1., ncg->gradient)); /* y = g - g_old, in place of g_old */
+    PetscCall(VecDot(ncg->direction, ncg->old_gradient, &dy));
+    PetscCall(VecDot(ncg->preconditioned, ncg->old_gradient, &yh));
+    PetscCall(VecAYPX(ncg->old_preconditioned, -1., ncg->preconditioned));
+    PetscCall(VecDot(ncg->old_preconditioned, ncg->old_gradient, &yy));
+    PetscCall(VecDot(ncg->direction, ncg->gradient, &dg));
+    *beta = (yh - 2. * yy * dg / dy) / dy;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* 000 Algorithm 1, lines 15-22. */
+static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+{
+  Ncg *const ncg = solver->data;
+  PetscReal slope, alpha, old_product, beta = 0.;
+  const PetscInt refresh = solver->settings.ncg_refresh;
+
+  PetscFunctionBegin;
+  PetscCall(VecDot(ncg->gradient, ncg->direction, &slope));
+  if (slope >= 0.) { /* not a descent direction: restart */
+    PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
+    PetscCall(VecScale(ncg->direction, -1.));
+    PetscCall(VecDot(ncg->gradient, ncg->direction, &slope));
+  }
+  *outcome = EQM_STEP_STALLED;
+  if (!(slope < 0.)) PetscFunctionReturn(0);
+  PetscCall(ParabolaStep(solver, slope, &alpha));
+  if (solver->settings.ncg_guard) PetscCall(Safeguard(solver, slope, &alpha));
+  if (alpha == 0.) PetscFunctionReturn(0);
+  PetscCall(EqmDomainMove(solver->domain, &solver->place, alpha, ncg->direction, &solver->place));
+  ncg->alpha = solver->step_length = alpha;
+
+  PetscCall(VecDot(ncg->preconditioned, ncg->gradient, &old_product));
+  PetscCall(VecCopy(ncg->gradient, ncg->old_gradient));
+  PetscCall(VecCopy(ncg->preconditioned, ncg->old_preconditioned));
+  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, ncg->gradient));
+  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
+  PetscCall(VecNorm(ncg->gradient, NORM_2, &solver->gradient_norm));
+  const PetscBool refreshed = (PetscBool)(refresh > 0 && (solver->iteration + 1) % refresh == 0);
+  if (refreshed) PetscCall(RefreshPreconditioner(solver));
+  PetscCall(Precondition(solver, ncg->gradient, ncg->preconditioned));
+  if (!refreshed) PetscCall(ComputeBeta(solver, old_product, &beta));
+  PetscCall(VecAXPBY(ncg->direction, -1., beta, ncg->preconditioned));
+  *outcome = EQM_STEP_TAKEN;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsBoundedInt("-ncg_refresh", "ncg: renew the preconditioner every so many iterations and restart; 0: never (as printed)", "EqmSolverSetFromOptions",
+                                   solver->settings.ncg_refresh, &solver->settings.ncg_refresh, NULL, 0));
+  PetscCall(PetscOptionsEnum("-ncg_beta", "ncg: how the directions are conjugated", "EqmSolverSetFromOptions", ncg_betas, solver->settings.ncg_beta,
+                             &solver->settings.ncg_beta, NULL));
+  PetscCall(PetscOptionsBool("-ncg_guard", "ncg: shorten a step of (18) that does not decrease the energy or disorders the boundary", "EqmSolverSetFromOptions",
+                             solver->settings.ncg_guard, &solver->settings.ncg_guard, NULL));
+  PetscFunctionReturn(0);
+}
+
+const EqmMethod EqmMethodNcg = {
+    .name = "ncg",
+    .purpose = "preconditioned nonlinear conjugate gradients (000 Algorithm 1)",
+    .default_start = "fixed-point",
+    .default_max_it = 100,
+    .default_energy_rtol = 1e-3,
+    .options = Options,
+    .set_up = SetUp,
+    .step = Step,
+    .destroy = Destroy,
+};

@@ -1,0 +1,181 @@
+/* The loop that all methods share: start, iterate, judge, stop. */
+#include "method/method.h"
+#include <string.h>
+
+PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *out)
+{
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&solver));
+  solver->comm = mesh->comm;
+  solver->mesh = mesh;
+  PetscCall(PetscStrncpy(solver->target, target, sizeof(solver->target)));
+  PetscCall(EqmSettingsDefault(&solver->settings));
+  *out = solver;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverDestroy(EqmSolver *solver)
+{
+  EqmSolver s = *solver;
+
+  PetscFunctionBegin;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(EqmLinearDestroy(&s->scalar));
+  PetscCall(EqmOrderingDestroy(&s->ordering));
+  PetscCall(PetscFree(s->scalar_count));
+  PetscCall(EqmPlaceDestroy(&s->place));
+  PetscCall(PetscFree(s->image));
+  PetscCall(PetscFree(s->objectives));
+  PetscCall(PetscFree(s->history));
+  PetscCall(EqmDomainDestroy(&s->domain));
+  PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverLook(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmImageMeasure(solver->domain, &solver->place, solver->image));
+  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
+  PetscFunctionReturn(0);
+}
+
+/* Domain, ordering, first map. */
+static PetscErrorCode Begin(EqmSolver solver)
+{
+  const EqmMesh mesh = solver->mesh;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPhaseBegin(mesh->ledger, EQM_PHASE_START));
+  if (!strcmp(solver->target, "disk")) PetscCall(EqmDomainCreateDisk(mesh, &solver->domain));
+  else if (!strcmp(solver->target, "square")) PetscCall(EqmDomainCreateSquare(mesh, solver->settings.has_corners ? solver->settings.corners : NULL, &solver->domain));
+  else EqmFail(solver->comm, EQM_ERR_USAGE, "there is no target '%s'; choose disk or square", solver->target);
+  PetscCall(EqmOrderingCreate(mesh, &solver->ordering));
+  PetscCall(EqmPlaceCreate(solver->domain, &solver->place));
+  PetscCall(PetscMalloc1(mesh->num_local_cells, &solver->image));
+  PetscCall(EqmStart(solver));
+  PetscCall(EqmSolverLook(solver));
+  PetscCall(EqmPhaseEnd(mesh->ledger, EQM_PHASE_START));
+  PetscFunctionReturn(0);
+}
+
+/* Has the objective all but stopped falling over the last iterations? */
+static PetscBool Stagnates(EqmSolver solver)
+{
+  const PetscInt last = solver->num_history - 1, span = solver->settings.stagnation;
+
+  if (last < span) return PETSC_FALSE;
+  const PetscReal then = solver->objectives[last - span], now = solver->objectives[last];
+  return (PetscBool)(then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
+}
+
+/* Is there reason to stop? Says which in status and message. The clock is rank 0's, so that all ranks agree. */
+static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
+{
+  const EqmSettings *const set = &solver->settings;
+  PetscReal seconds;
+  EqmWork *work;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
+  PetscCall(EqmLedgerGetSeconds(solver->mesh->ledger, NULL, NULL, &seconds));
+  *stop = PETSC_TRUE;
+  solver->status = EQM_STATUS_CONVERGED;
+  if (set->energy_target > 0. && solver->totals.energy <= set->energy_target) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %g", (double)set->energy_target));
+  } else if (solver->gradient_norm >= 0. && solver->gradient_norm <= set->gradient_tol) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the gradient's norm is below %g", (double)set->gradient_tol));
+  } else if (Stagnates(solver)) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the objective fell by less than %g per iteration over the last %" PetscInt_FMT " iterations",
+                            (double)set->energy_rtol, set->stagnation));
+  } else {
+    solver->status = EQM_STATUS_NOT_CONVERGED;
+    if (solver->iteration >= set->max_it) {
+      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped after -max_it %" PetscInt_FMT " iterations", set->max_it));
+    } else if (set->max_factorizations > 0 && work->coupled_factorizations >= set->max_factorizations) {
+      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped after -max_factorizations %" PetscInt_FMT, set->max_factorizations));
+    } else if (set->wall_time > 0. && seconds >= set->wall_time) {
+      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %g s", (double)set->wall_time));
+    } else {
+      *stop = PETSC_FALSE;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Iterate(EqmSolver solver)
+{
+  PetscBool stop = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(solver->method->set_up(solver));
+  PetscCall(EqmMonitorRow(solver));
+  PetscCall(ShouldStop(solver, &stop));
+  while (!stop) {
+    EqmStep outcome;
+    PetscCall(solver->method->step(solver, &outcome));
+    if (outcome == EQM_STEP_STALLED) {
+      solver->status = EQM_STATUS_NOT_CONVERGED;
+      PetscCall(PetscStrncpy(solver->message, "no step decreases the objective any more: the limit of this method and this arithmetic", sizeof(solver->message)));
+      break;
+    }
+    solver->iteration++;
+    PetscCheck(!PetscIsInfOrNanReal(solver->totals.energy), solver->comm, PETSC_ERR_FP, "the energy is not finite after iteration %" PetscInt_FMT, solver->iteration);
+    PetscCall(EqmMonitorRow(solver));
+    PetscCall(ShouldStop(solver, &stop));
+  }
+  PetscCall(solver->method->destroy(solver));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverSolve(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(Begin(solver));
+  PetscCall(EqmMonitorBegin(solver));
+  PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  PetscCall(Iterate(solver));
+  PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  if (solver->totals.folds > 0) {
+    solver->status = EQM_STATUS_FOLDS;
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "%" PetscInt64_FMT " triangles of the map are folded over; try the default method, or -start guarded",
+                            solver->totals.folds));
+  }
+  PetscCall(EqmMonitorEnd(solver));
+  PetscFunctionReturn(0);
+}
+
+/* How the run went, copied into the map. */
+static PetscErrorCode TakeHistory(EqmSolver solver, EqmMap map)
+{
+  EqmWork *work;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
+  map->work = *work;
+  map->iterations = solver->iteration;
+  map->num_history = solver->num_history;
+  PetscCall(PetscMalloc1(solver->num_history, &map->history));
+  PetscCall(PetscArraycpy(map->history, solver->history, solver->num_history));
+  map->energy_initial = solver->history[0].energy;
+  map->energy_final = map->distortion.energy;
+  map->status = solver->status;
+  map->num_boundary_vertices = solver->mesh->num_boundary_vertices;
+  map->ranks = solver->mesh->size;
+  PetscCall(PetscStrncpy(map->message, solver->message, sizeof(map->message)));
+  PetscCall(PetscStrncpy(map->method, solver->method->name, sizeof(map->method)));
+  PetscCall(PetscStrncpy(map->command, solver->target, sizeof(map->command)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverGetMap(EqmSolver solver, EqmSoup soup, EqmMap *map)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMapCreate(soup, solver->domain->dim, map));
+  PetscCall(EqmMeshVerticesToInput(solver->mesh, soup, solver->domain->dim, solver->place.x, (*map)->coordinates));
+  PetscCall(EqmMapMeasure(*map, solver->mesh, solver->place.x));
+  PetscCall(TakeHistory(solver, *map));
+  PetscFunctionReturn(0);
+}

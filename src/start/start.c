@@ -1,0 +1,128 @@
+/* First maps. */
+#include "method/method.h"
+
+typedef struct {
+  const char *name, *purpose;
+  EqmLaplacianKind laplacian;
+  PetscBool guarded; /* fixed-point steps are cut short before the first fold */
+  PetscInt steps;    /* fixed-point steps unless -start_steps says otherwise */
+} StartRow;
+
+static const StartRow starts[] = {
+    {"harmonic", "boundary by arc length, interior by cotangent weights", EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
+    {"fixed-point", "harmonic, then fixed-point steps with the boundary held (000 Algorithm 1, lines 4-7)", EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 4},
+    {"tutte", "boundary by arc length, interior by equal weights: never folds", EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 0},
+    {"guarded", "tutte, then fixed-point steps that stop short of the first fold", EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 5},
+};
+enum { NUM_STARTS = sizeof(starts) / sizeof(starts[0]) };
+
+static PetscErrorCode FindRow(const char *name, const StartRow **row)
+{
+  PetscFunctionBegin;
+  *row = NULL;
+  for (int k = 0; k < NUM_STARTS; k++) {
+    PetscBool same;
+    PetscCall(PetscStrcmp(name, starts[k].name, &same));
+    if (same) *row = &starts[k];
+  }
+  if (!*row) {
+    char names[EQM_MESSAGE_MAX];
+    PetscCall(EqmStartNames(names, sizeof(names)));
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-start %s: there is no such start; choose one of %s", name, names);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Fail with EQM_ERR_USAGE if there is no start of this name. Collective. */
+PetscErrorCode EqmStartFind(const char *name)
+{
+  const StartRow *row;
+
+  PetscFunctionBegin;
+  PetscCall(FindRow(name, &row));
+  PetscFunctionReturn(0);
+}
+
+/* The names of all starts, separated by commas. Not collective. */
+PetscErrorCode EqmStartNames(char *text, size_t length)
+{
+  PetscFunctionBegin;
+  text[0] = '\0';
+  for (int k = 0; k < NUM_STARTS; k++) {
+    PetscCall(PetscStrlcat(text, k ? ", " : "", length));
+    PetscCall(PetscStrlcat(text, starts[k].name, length));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Smallest positive zero of a0 + b t + c t^2, a0 > 0; infinite where there is none. */
+static PetscReal FirstZero(PetscReal a0, PetscReal b, PetscReal c)
+{
+  const PetscReal discriminant = b * b - 4. * a0 * c;
+  PetscReal q, t = PETSC_INFINITY;
+
+  if (discriminant < 0.) return t;
+  q = -.5 * (b + (b >= 0. ? 1. : -1.) * PetscSqrtReal(discriminant));
+  if (c != 0. && q / c > 0.) t = q / c;
+  if (q != 0. && a0 / q > 0.) t = PetscMin(t, a0 / q);
+  return t;
+}
+
+PetscErrorCode EqmStepToFold(EqmSolver solver, const PetscReal *velocity, PetscReal *step)
+{
+  const EqmMesh mesh = solver->mesh;
+  PetscReal *first, *second, *a, local = PETSC_INFINITY;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(mesh->num_local_cells, &first, mesh->num_local_cells, &second, mesh->num_local_cells, &a));
+  PetscCall(EqmImageMeasure(solver->domain, &solver->place, a));
+  PetscCall(EqmImageDerivatives(solver->domain, &solver->place, velocity, NULL, first, second));
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
+    if (a[c] > 0.) local = PetscMin(local, FirstZero(a[c], first[c], .5 * second[c]));
+  }
+  PetscCall(MPIU_Allreduce(&local, step, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
+  *step = PetscMin(1., .9 * *step);
+  PetscCall(PetscFree3(first, second, a));
+  PetscFunctionReturn(0);
+}
+
+/* Towards the harmonic map of L_S(f) with the boundary held, but not through a fold (METHODS section 9). */
+static PetscErrorCode FixedPointStep(EqmSolver solver, PetscBool guarded, PetscReal *weights, EqmPlace *to)
+{
+  const PetscInt n = solver->domain->dim * solver->mesh->num_local;
+  PetscReal step = 1.;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
+  PetscCall(EqmHarmonicMap(solver, weights, &solver->place, to));
+  if (guarded) {
+    for (PetscInt k = 0; k < n; k++) to->x[k] -= solver->place.x[k];
+    PetscCall(EqmStepToFold(solver, to->x, &step));
+    for (PetscInt k = 0; k < n; k++) to->x[k] = solver->place.x[k] + step * to->x[k];
+  }
+  PetscCall(EqmPlaceCopy(solver->domain, to, &solver->place));
+  PetscFunctionReturn(0);
+}
+
+/* Compute the first map that the settings ask for. Collective. */
+PetscErrorCode EqmStart(EqmSolver solver)
+{
+  const StartRow *row;
+  PetscReal *weights;
+  PetscInt steps;
+  EqmPlace to;
+
+  PetscFunctionBegin;
+  PetscCall(FindRow(solver->settings.start, &row));
+  steps = solver->settings.start_steps >= 0 ? solver->settings.start_steps : row->steps;
+  PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
+  PetscCall(EqmPlaceCreate(solver->domain, &to));
+  PetscCall(EqmDomainPlaceBoundary(solver->domain, &solver->place));
+  PetscCall(EqmLaplacianWeights(solver->domain, row->laplacian, &solver->place, weights));
+  PetscCall(EqmHarmonicMap(solver, weights, &solver->place, &to));
+  PetscCall(EqmPlaceCopy(solver->domain, &to, &solver->place));
+  for (PetscInt k = 0; k < steps; k++) PetscCall(FixedPointStep(solver, row->guarded, weights, &to));
+  PetscCall(EqmPlaceDestroy(&to));
+  PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
