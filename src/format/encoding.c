@@ -1,0 +1,115 @@
+#include "encoding.h"
+
+#include <stdint.h>
+#include <string.h>
+#include <zlib.h>
+
+/* EqmBase64Length - characters that `num_bytes` bytes become, padding included. Not collective. */
+size_t EqmBase64Length(size_t num_bytes)
+{
+  return (num_bytes + 2) / 3 * 4;
+}
+
+static int ValueOf(char c)
+{
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+
+/* EqmBase64Decode - decode until `max_bytes` bytes are there, the text ends or something else than base64 comes. Not
+   collective. White space is skipped; padding ends a group, not the text, because some programs encode a header and its
+   data separately and put them side by side. Returns the number of bytes. */
+size_t EqmBase64Decode(const char *text, size_t length, char *bytes, size_t max_bytes)
+{
+  size_t count = 0;
+  uint32_t group = 0;
+  int digits = 0, padding = 0;
+
+  for (size_t i = 0; i < length && count < max_bytes; ++i) {
+    int value = ValueOf(text[i]);
+
+    if (text[i] == ' ' || text[i] == '\n' || text[i] == '\r' || text[i] == '\t') continue;
+    if (text[i] == '=' && digits >= 2) {
+      value = 0;
+      ++padding;
+    } else if (value < 0 || padding) {
+      break;
+    }
+    group = group << 6 | (uint32_t)value;
+    if (++digits < 4) continue;
+    for (int k = 0; k < 3 - padding && count < max_bytes; ++k) bytes[count++] = (char)(group >> (16 - 8 * k));
+    group = 0;
+    digits = padding = 0;
+  }
+  return count;
+}
+
+/* EqmBase64Open - begin a base64 text in a file. Not collective. EqmBase64Close must follow. */
+void EqmBase64Open(EqmBase64Writer *writer, EqmAtomicFile *file)
+{
+  writer->file = file;
+  writer->num_kept = 0;
+}
+
+static void Flush(EqmBase64Writer *writer)
+{
+  static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const size_t count = writer->num_kept;
+  char text[4 * 1024];
+  size_t used = 0;
+
+  for (size_t i = 0; i < count; i += 3) {
+    const size_t left = count - i;
+    uint32_t group = (uint32_t)(unsigned char)writer->kept[i] << 16;
+
+    if (left > 1) group |= (uint32_t)(unsigned char)writer->kept[i + 1] << 8;
+    if (left > 2) group |= (uint32_t)(unsigned char)writer->kept[i + 2];
+    text[used++] = digit[group >> 18];
+    text[used++] = digit[group >> 12 & 63];
+    text[used++] = left > 1 ? digit[group >> 6 & 63] : '=';
+    text[used++] = left > 2 ? digit[group & 63] : '=';
+  }
+  EqmAtomicWrite(writer->file, text, used);
+  writer->num_kept = 0;
+}
+
+/* EqmBase64Write - append bytes. Not collective. */
+void EqmBase64Write(EqmBase64Writer *writer, const void *bytes, size_t num_bytes)
+{
+  const char *next = bytes;
+
+  while (num_bytes) {
+    size_t part = PetscMin(num_bytes, sizeof(writer->kept) - writer->num_kept);
+
+    memcpy(writer->kept + writer->num_kept, next, part);
+    writer->num_kept += part;
+    next += part;
+    num_bytes -= part;
+    if (writer->num_kept == sizeof(writer->kept)) Flush(writer);
+  }
+}
+
+/* EqmBase64Close - write what waits, with padding. Not collective. */
+void EqmBase64Close(EqmBase64Writer *writer)
+{
+  Flush(writer);
+}
+
+/* EqmInflate - unpack a zlib stream that must hold exactly `num_bytes` bytes. Not collective. */
+PetscBool EqmInflate(const char *packed, size_t length, char *bytes, size_t num_bytes)
+{
+  uLongf unpacked = (uLongf)num_bytes;
+
+  return uncompress((Bytef *)bytes, &unpacked, (const Bytef *)packed, (uLong)length) == Z_OK && unpacked == num_bytes
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+}
+
+/* EqmInflatePlausible - can a zlib stream of this length hold so many bytes? Deflate packs 1032 to 1 at best. To be
+   asked before memory is taken for what a header claims. Not collective. */
+PetscBool EqmInflatePlausible(size_t packed_length, size_t num_bytes)
+{
+  return num_bytes / 1032 <= packed_length ? PETSC_TRUE : PETSC_FALSE;
+}

@@ -1,0 +1,29 @@
+/* What the two versions of Gmsh's MSH format share. */
+#ifndef EQM_FORMAT_GMSH_H
+#define EQM_FORMAT_GMSH_H
+
+#include "builder.h"
+#include "scalar.h"
+#include "tagmap.h"
+
+typedef struct {
+  EqmInput *in;
+  EqmBuilder builder;
+  EqmTagMap tags;
+  PetscBool ascii, big_endian;
+  PetscBool has_nodes;
+} EqmGmsh;
+
+PETSC_INTERN PetscErrorCode EqmGmshReadInteger(EqmGmsh *gmsh, EqmScalarType type, const char *what, PetscInt64 *value);
+PETSC_INTERN PetscErrorCode EqmGmshReadCount(EqmGmsh *gmsh, EqmScalarType type, const char *what, size_t bytes_each,
+                                             PetscInt64 *count);
+PETSC_INTERN PetscErrorCode EqmGmshReadPoint(EqmGmsh *gmsh, PetscReal point[3]);
+PETSC_INTERN PetscErrorCode EqmGmshCloseNodes(EqmGmsh *gmsh);
+PETSC_INTERN PetscErrorCode EqmGmshNodesOfType(EqmGmsh *gmsh, PetscInt64 type, PetscInt *num_nodes);
+PETSC_INTERN PetscErrorCode EqmGmshReadElement(EqmGmsh *gmsh, PetscInt64 type, PetscInt num_nodes, EqmScalarType index);
+PETSC_INTERN PetscErrorCode EqmGmshParseNodes2(EqmGmsh *gmsh);
+PETSC_INTERN PetscErrorCode EqmGmshParseElements2(EqmGmsh *gmsh);
+PETSC_INTERN PetscErrorCode EqmGmshParseNodes4(EqmGmsh *gmsh);
+PETSC_INTERN PetscErrorCode EqmGmshParseElements4(EqmGmsh *gmsh);
+
+#endif

@@ -1,0 +1,164 @@
+/* Wavefront OBJ: `v x y z` and `f a/b/c ...` lines; everything else (normals, textures, groups, materials) is passed
+ * over. */
+#include "builder.h"
+#include "format.h"
+
+#include <string.h>
+
+/* The keywords that OBJ has, to tell an OBJ file without a mesh from a file of something else. */
+static PetscBool IsKeyword(const char *word, size_t length)
+{
+  static const char *const keyword[] = {"v",      "vt",     "vn",     "vp",   "f",      "p",      "l",
+                                        "g",      "o",      "s",      "mg",   "mtllib", "usemtl", "#",
+                                        "usemap", "maplib", "cstype", "deg",  "bmat",   "step",   "curv",
+                                        "curv2",  "surf",   "parm",   "trim", "hole",   "end"};
+
+  for (size_t i = 0; i < sizeof(keyword) / sizeof(keyword[0]); ++i) {
+    if (strlen(keyword[i]) == length && !memcmp(keyword[i], word, length)) return PETSC_TRUE;
+  }
+  return length && word[0] == '#' ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* EqmRecogniseObj - a weak guess, since OBJ has no magic: the first statement is one that OBJ has. Not collective. */
+PetscBool EqmRecogniseObj(const char *bytes, size_t length)
+{
+  EqmInput in;
+  char unused[8];
+  const char *word;
+  size_t word_length;
+
+  EqmInputOpen(&in, bytes, length, unused, sizeof(unused));
+  EqmSkipSpace(&in, '#');
+  word_length = EqmReadWord(&in, &word);
+  return word_length && !EqmAtLineEnd(&in) && IsKeyword(word, word_length) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The largest index of the file; faces may come before the vertices that they name. */
+typedef struct {
+  PetscInt64 index;
+  const char *position;
+} Largest;
+
+static PetscErrorCode ParseVertex(EqmInput *in, EqmBuilder *builder)
+{
+  PetscReal *x;
+
+  EqmTry(EqmBuilderAddVertices(builder, 1, &x));
+  for (PetscInt k = 0; k < 3; ++k) {
+    if (!EqmReadReal(in, &x[k])) return EqmReject(in, EQM_ERR_IO, "a vertex needs three numbers after the v");
+  }
+  return 0;
+}
+
+/* One corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative indices count back from the last vertex so far. */
+static PetscErrorCode ParseCorner(EqmInput *in, const EqmBuilder *builder, PetscInt64 *corner)
+{
+  const PetscInt64 num_vertices = (PetscInt64)builder->num_vertices;
+  const char *next = EqmParseInteger(in->cursor, in->end, corner);
+
+  if (!next || (next < in->end && !EqmIsSpace(*next) && *next != '/')) {
+    return EqmReject(in, EQM_ERR_IO, "a corner of a face must be a vertex index, or indices separated by slashes");
+  }
+  if (*corner == 0 || *corner < -num_vertices || *corner > PETSC_MAX_INT) {
+    return EqmReject(in, EQM_ERR_IO, "vertex index %lld is out of range 1..%lld", (long long)*corner,
+                     (long long)num_vertices);
+  }
+  *corner = *corner > 0 ? *corner - 1 : *corner + num_vertices;
+  in->cursor = next;
+  while (in->cursor < in->end && !EqmIsSpace(*in->cursor)) ++in->cursor;
+  return 0;
+}
+
+/* A backslash at the end of a line continues it. */
+static void SkipContinuation(EqmInput *in)
+{
+  EqmSkipBlanks(in);
+  while (EqmRemaining(in) > 1 && in->cursor[0] == '\\' && (in->cursor[1] == '\n' || in->cursor[1] == '\r')) {
+    EqmSkipLine(in);
+    EqmSkipBlanks(in);
+  }
+}
+
+static PetscErrorCode ParseFace(EqmInput *in, EqmBuilder *builder, Largest *largest)
+{
+  const char *position = in->cursor;
+  PetscInt64 corners[3] = {0, 0, 0}, num_corners = 0;
+
+  for (SkipContinuation(in); !EqmAtLineEnd(in); SkipContinuation(in)) {
+    PetscInt64 corner;
+
+    EqmTry(ParseCorner(in, builder, &corner));
+    if (num_corners < 3) corners[num_corners] = corner;
+    if (corner > largest->index) *largest = (Largest){corner, position};
+    ++num_corners;
+  }
+  return EqmBuilderAddFace(builder, position, PETSC_MAX_INT, num_corners, corners);
+}
+
+static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest *largest, PetscBool *foreign)
+{
+  const char *word;
+  size_t length = EqmReadWord(in, &word);
+
+  if (length == 1 && *word == 'v') {
+    EqmTry(ParseVertex(in, builder));
+  } else if (length == 1 && *word == 'f') {
+    EqmTry(ParseFace(in, builder, largest));
+  } else if (length && !IsKeyword(word, length)) {
+    *foreign = PETSC_TRUE;
+    for (size_t i = 0; i < length; ++i) {
+      if ((unsigned char)word[i] < ' ')
+        return EqmRejectAt(in, word, EQM_ERR_IO, "binary bytes: this is not an OBJ file");
+    }
+  }
+  return 0;
+}
+
+static PetscErrorCode ParseStatements(EqmInput *in, EqmBuilder *builder)
+{
+  Largest largest = {-1, in->start};
+  PetscBool foreign = PETSC_FALSE;
+
+  while (in->cursor < in->end) {
+    EqmTry(ParseStatement(in, builder, &largest, &foreign));
+    EqmSkipLine(in);
+  }
+  if (foreign && !builder->num_vertices) {
+    return EqmRejectAt(in, in->start, EQM_ERR_IO,
+                       "this is not an OBJ file: it has no vertices (lines that begin with v)");
+  }
+  if (largest.index >= (PetscInt64)builder->num_vertices) {
+    return EqmRejectAt(in, largest.position, EQM_ERR_IO, "vertex index %lld is out of range 1..%lld",
+                       (long long)largest.index + 1, (long long)builder->num_vertices);
+  }
+  return 0;
+}
+
+/* EqmParseObj - read an OBJ file. See EqmParser. */
+PetscErrorCode EqmParseObj(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+{
+  EqmInput in;
+  EqmBuilder builder;
+
+  EqmInputOpen(&in, bytes, length, error, error_length);
+  EqmBuilderOpen(&builder, &in);
+  return EqmBuilderFinish(&builder, ParseStatements(&in, &builder), mesh);
+}
+
+/* EqmWriteObj - write an OBJ file. See EqmWriter. */
+PetscErrorCode EqmWriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
+                           char *error, size_t error_length)
+{
+  EqmTry(EqmRequireTriangles(mesh, "OBJ", error, error_length));
+  for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
+    EqmAtomicWrite(file, "v ", 2);
+    EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
+    EqmAtomicWrite(file, "\n", 1);
+  }
+  for (PetscInt i = 0; i < mesh->num_cells; ++i) {
+    const PetscInt *cell = mesh->cells + 3 * (size_t)i;
+
+    EqmAtomicPrint(file, "f %lld %lld %lld\n", (long long)cell[0] + 1, (long long)cell[1] + 1, (long long)cell[2] + 1);
+  }
+  return 0;
+}

@@ -1,0 +1,130 @@
+/* OFF of Geomview, ASCII: also with colours, normals and texture coordinates (COFF, NOFF, STOFF and their mixtures),
+   which are passed over. */
+#include "builder.h"
+#include "format.h"
+
+#include <string.h>
+#include <strings.h>
+
+/* Read [ST][C][N]OFF. Geomview's 4OFF and nOFF have vertices in other dimensions. */
+static PetscBool ReadMagic(EqmInput *in)
+{
+  const char *word;
+  size_t length = EqmReadWord(in, &word);
+
+  if (length >= 2 && !strncmp(word, "ST", 2)) {
+    word += 2;
+    length -= 2;
+  }
+  for (const char *prefix = "CN"; *prefix; ++prefix) {
+    if (length && *word == *prefix) {
+      ++word;
+      --length;
+    }
+  }
+  return length == 3 && !strncmp(word, "OFF", 3) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* EqmRecogniseOff - the first word, after comments, is OFF or one of its relatives. Not collective. */
+PetscBool EqmRecogniseOff(const char *bytes, size_t length)
+{
+  EqmInput in;
+  char unused[8];
+
+  EqmInputOpen(&in, bytes, length, unused, sizeof(unused));
+  EqmSkipSpace(&in, '#');
+  return ReadMagic(&in);
+}
+
+static PetscErrorCode ParseHeader(EqmInput *in, PetscInt64 *num_vertices, PetscInt64 *num_faces)
+{
+  EqmSkipSpace(in, '#');
+  if (!ReadMagic(in)) return EqmReject(in, EQM_ERR_IO, "an OFF file begins with OFF, COFF or NOFF");
+  if (EqmReadKeyword(in, "BINARY"))
+    return EqmReject(in, EQM_ERR_IO, "binary OFF files are not supported: convert to PLY");
+  EqmSkipSpace(in, '#');
+  EqmTry(EqmReadCount(in, "vertices", 6, num_vertices));
+  EqmSkipSpace(in, '#');
+  EqmTry(EqmReadCount(in, "faces", 4, num_faces));
+  EqmSkipLine(in); /* the number of edges, which nobody trusts */
+  return 0;
+}
+
+static PetscErrorCode ParseVertices(EqmInput *in, PetscInt64 num_vertices, EqmBuilder *builder)
+{
+  PetscReal *x;
+
+  EqmTry(EqmBuilderAddVertices(builder, (size_t)num_vertices, &x));
+  for (PetscInt64 i = 0; i < num_vertices; ++i) {
+    EqmSkipSpace(in, '#');
+    for (PetscInt k = 0; k < 3; ++k) {
+      if (!EqmReadReal(in, &x[3 * i + k])) {
+        return EqmReject(in, EQM_ERR_IO, "vertex %lld of %lld needs three numbers%s", (long long)i,
+                         (long long)num_vertices, in->cursor == in->end ? ": the file is truncated" : "");
+      }
+    }
+    EqmSkipLine(in); /* colour, normal */
+  }
+  return 0;
+}
+
+static PetscErrorCode ParseFaces(EqmInput *in, PetscInt64 num_faces, EqmBuilder *builder)
+{
+  for (PetscInt64 i = 0; i < num_faces; ++i) {
+    PetscInt64 num_corners, corners[3] = {0, 0, 0};
+    const char *position;
+
+    EqmSkipSpace(in, '#');
+    position = in->cursor;
+    if (!EqmReadInteger(in, &num_corners)) {
+      return EqmReject(in, EQM_ERR_IO, "face %lld of %lld is missing%s", (long long)i, (long long)num_faces,
+                       in->cursor == in->end ? ": the file is truncated" : " its number of corners");
+    }
+    for (PetscInt64 k = 0; k < PetscMin(num_corners, 3); ++k) {
+      if (!EqmReadInteger(in, &corners[k])) {
+        return EqmReject(in, EQM_ERR_IO, "face %lld needs %lld vertex indices", (long long)i, (long long)num_corners);
+      }
+    }
+    EqmTry(EqmBuilderAddFace(builder, position, (PetscInt64)builder->num_vertices, num_corners, corners));
+    EqmSkipLine(in); /* colour */
+  }
+  return 0;
+}
+
+static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder)
+{
+  PetscInt64 num_vertices, num_faces;
+
+  EqmTry(ParseHeader(in, &num_vertices, &num_faces));
+  EqmTry(ParseVertices(in, num_vertices, builder));
+  return ParseFaces(in, num_faces, builder);
+}
+
+/* EqmParseOff - read an OFF file. See EqmParser. */
+PetscErrorCode EqmParseOff(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+{
+  EqmInput in;
+  EqmBuilder builder;
+
+  EqmInputOpen(&in, bytes, length, error, error_length);
+  EqmBuilderOpen(&builder, &in);
+  return EqmBuilderFinish(&builder, ParseMesh(&in, &builder), mesh);
+}
+
+/* EqmWriteOff - write an OFF file. See EqmWriter. */
+PetscErrorCode EqmWriteOff(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
+                           char *error, size_t error_length)
+{
+  EqmTry(EqmRequireTriangles(mesh, "OFF", error, error_length));
+  EqmAtomicPrint(file, "OFF\n%lld %lld 0\n", (long long)mesh->num_vertices, (long long)mesh->num_cells);
+  for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
+    EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
+    EqmAtomicWrite(file, "\n", 1);
+  }
+  for (PetscInt i = 0; i < mesh->num_cells; ++i) {
+    const PetscInt *cell = mesh->cells + 3 * (size_t)i;
+
+    EqmAtomicPrint(file, "3 %lld %lld %lld\n", (long long)cell[0], (long long)cell[1], (long long)cell[2]);
+  }
+  return 0;
+}

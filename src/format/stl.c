@@ -1,0 +1,155 @@
+/* STL, ASCII and binary. The file repeats a vertex in every triangle; equal coordinates are taken for one vertex,
+   numbered in the order of first appearance. */
+#include "builder.h"
+#include "format.h"
+#include "scalar.h"
+#include "weld.h"
+
+#include <string.h>
+
+#define HEADER_BYTES   80
+#define TRIANGLE_BYTES 50
+
+/* Does the file's length agree with the number of triangles in a binary header? ASCII files cannot be told by their
+   first word alone: many binary ones begin with "solid", too. */
+static PetscBool IsBinary(const char *bytes, size_t length)
+{
+  if (length < HEADER_BYTES + 4) return PETSC_FALSE;
+  return (size_t)EqmLoadInteger(bytes + HEADER_BYTES, EQM_SCALAR_UINT32, PETSC_FALSE) * TRIANGLE_BYTES ==
+                 length - HEADER_BYTES - 4
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+}
+
+static PetscBool IsAscii(const char *bytes, size_t length)
+{
+  EqmInput in;
+  char unused[8];
+
+  EqmInputOpen(&in, bytes, length, unused, sizeof(unused));
+  EqmSkipSpace(&in, 0);
+  if (!EqmReadKeyword(&in, "solid")) return PETSC_FALSE;
+  EqmSkipLine(&in);
+  EqmSkipSpace(&in, 0);
+  return EqmReadKeyword(&in, "facet") || EqmReadKeyword(&in, "endsolid") ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* EqmRecogniseStl - "solid" and a facet, or a length that fits a binary header. Not collective. */
+PetscBool EqmRecogniseStl(const char *bytes, size_t length)
+{
+  return IsBinary(bytes, length) || IsAscii(bytes, length) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode ParseBinary(EqmInput *in, EqmBuilder *builder)
+{
+  const char *bytes;
+  PetscInt64 num_triangles;
+  PetscReal *x;
+
+  in->binary = PETSC_TRUE;
+  EqmTry(EqmTakeBytes(in, HEADER_BYTES, "header", &bytes));
+  EqmTry(EqmTakeBytes(in, 4, "header", &bytes));
+  num_triangles = EqmLoadInteger(bytes, EQM_SCALAR_UINT32, PETSC_FALSE);
+  EqmTry(EqmTakeBytes(in, (size_t)num_triangles * TRIANGLE_BYTES, "triangles", &bytes));
+  EqmTry(EqmBuilderAddVertices(builder, 3 * (size_t)num_triangles, &x));
+  for (PetscInt64 t = 0; t < num_triangles; ++t) {
+    for (PetscInt k = 0; k < 9; ++k) { /* after the normal's three numbers */
+      x[9 * t + k] = EqmLoadReal(bytes + TRIANGLE_BYTES * t + 12 + 4 * k, EQM_SCALAR_FLOAT32, PETSC_FALSE);
+    }
+  }
+  return 0;
+}
+
+/* The lines between "facet" and "endfacet". */
+static PetscErrorCode ParseFacet(EqmInput *in, EqmBuilder *builder)
+{
+  const char *position = in->cursor;
+  PetscInt num_corners = 0;
+
+  for (EqmSkipLine(in); !EqmReadKeyword(in, "endfacet"); EqmSkipLine(in)) {
+    PetscReal *x;
+
+    if (in->cursor == in->end) return EqmReject(in, EQM_ERR_IO, "the file ends inside a facet: it is truncated");
+    if (!EqmReadKeyword(in, "vertex")) continue; /* outer loop, endloop */
+    EqmTry(EqmBuilderAddVertices(builder, 1, &x));
+    ++num_corners;
+    for (PetscInt k = 0; k < 3; ++k) {
+      if (!EqmReadReal(in, &x[k])) return EqmReject(in, EQM_ERR_IO, "a vertex needs three numbers");
+    }
+  }
+  if (num_corners == 3) return 0;
+  return EqmRejectAt(in, position, EQM_ERR_IO, "a facet has %d vertices instead of three", (int)num_corners);
+}
+
+static PetscErrorCode ParseAscii(EqmInput *in, EqmBuilder *builder)
+{
+  PetscInt open_solids = 0;
+
+  EqmSkipSpace(in, 0);
+  for (; in->cursor < in->end; EqmSkipLine(in)) {
+    if (EqmReadKeyword(in, "facet")) {
+      EqmTry(ParseFacet(in, builder));
+    } else if (EqmReadKeyword(in, "solid")) {
+      ++open_solids;
+    } else if (EqmReadKeyword(in, "endsolid")) {
+      --open_solids;
+    } else if (!EqmAtLineEnd(in)) {
+      return EqmReject(in, EQM_ERR_IO, "neither a facet nor a solid: this is not an STL file, or a damaged one");
+    }
+  }
+  if (open_solids) return EqmReject(in, EQM_ERR_IO, "the last endsolid is missing: the file is truncated");
+  return 0;
+}
+
+/* Each three vertices are a triangle; make one of those that are in the same place. */
+static PetscErrorCode WeldTriangles(EqmBuilder *builder)
+{
+  PetscInt *cells;
+
+  EqmTry(EqmBuilderAddCells(builder, 3, builder->num_vertices / 3, &cells));
+  return EqmWeld(builder->num_vertices, builder->vertices, &builder->num_vertices, cells);
+}
+
+static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder)
+{
+  PetscBool ascii =
+      IsAscii(in->start, EqmRemaining(in)) && !IsBinary(in->start, EqmRemaining(in)) ? PETSC_TRUE : PETSC_FALSE;
+
+  EqmTry(ascii ? ParseAscii(in, builder) : ParseBinary(in, builder));
+  return WeldTriangles(builder);
+}
+
+/* EqmParseStl - read an STL file. See EqmParser. */
+PetscErrorCode EqmParseStl(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+{
+  EqmInput in;
+  EqmBuilder builder;
+
+  EqmInputOpen(&in, bytes, length, error, error_length);
+  EqmBuilderOpen(&builder, &in);
+  return EqmBuilderFinish(&builder, ParseMesh(&in, &builder), mesh);
+}
+
+/* EqmWriteStl - write a binary STL file. See EqmWriter. The format has single precision and no vertices of its own. */
+PetscErrorCode EqmWriteStl(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
+                           char *error, size_t error_length)
+{
+  const char header[HEADER_BYTES] = "equimap binary STL";
+  const uint32_t num_triangles = (uint32_t)mesh->num_cells;
+
+  EqmTry(EqmRequireTriangles(mesh, "STL", error, error_length));
+  EqmAtomicWrite(file, header, sizeof(header));
+  EqmAtomicWrite(file, &num_triangles, sizeof(num_triangles));
+  for (PetscInt i = 0; i < mesh->num_cells; ++i) {
+    float triangle[12] = {0}; /* a normal of zero: to be computed by who needs it */
+
+    for (PetscInt k = 0; k < 9; ++k) {
+      const size_t vertex = (size_t)mesh->cells[3 * (size_t)i + (size_t)(k / 3)];
+
+      triangle[3 + k] = (float)mesh->vertices[3 * vertex + (size_t)(k % 3)];
+    }
+    EqmAtomicWrite(file, triangle, sizeof(triangle));
+    EqmAtomicWrite(file, "\0", 2);
+  }
+  return 0;
+}

@@ -1,0 +1,318 @@
+/* Legacy VTK: POLYDATA and UNSTRUCTURED_GRID, ASCII and binary, versions 1 to 5.1. */
+#include "format.h"
+#include "scalar.h"
+#include "vtkcells.h"
+
+#include <string.h>
+
+typedef struct {
+  EqmInput *in;
+  EqmBuilder builder;
+  PetscBool ascii, polydata;
+  EqmVtkCells cells; /* of an unstructured grid: its types come later */
+} Vtk;
+
+/* EqmRecogniseVtk - the first line. Not collective. */
+PetscBool EqmRecogniseVtk(const char *bytes, size_t length)
+{
+  static const char magic[] = "# vtk DataFile Version";
+
+  return length >= sizeof(magic) - 1 && !memcmp(bytes, magic, sizeof(magic) - 1) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode ParseType(EqmInput *in, EqmScalarType *type)
+{
+  static const struct {
+    const char *name;
+    EqmScalarType type;
+  } known[] = {{"float", EQM_SCALAR_FLOAT32},
+               {"double", EQM_SCALAR_FLOAT64},
+               {"int", EQM_SCALAR_INT32},
+               {"unsigned_int", EQM_SCALAR_UINT32},
+               {"long", EQM_SCALAR_INT64},
+               {"unsigned_long", EQM_SCALAR_UINT64},
+               {"vtktypeint64", EQM_SCALAR_INT64},
+               {"vtktypeuint64", EQM_SCALAR_UINT64},
+               {"vtktypeint32", EQM_SCALAR_INT32},
+               {"vtktypeuint32", EQM_SCALAR_UINT32},
+               {"vtkIdType", EQM_SCALAR_INT32},
+               {"short", EQM_SCALAR_INT16},
+               {"unsigned_short", EQM_SCALAR_UINT16},
+               {"char", EQM_SCALAR_INT8},
+               {"unsigned_char", EQM_SCALAR_UINT8}};
+
+  for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); ++i) {
+    if (EqmReadKeyword(in, known[i].name)) {
+      *type = known[i].type;
+      return 0;
+    }
+  }
+  return EqmReject(in, EQM_ERR_IO,
+                   "unknown data type; known are float, double, int, long, short, char and unsigned ones");
+}
+
+/* Can the rest of the file hold so many numbers? To be asked before memory is taken for them. */
+static PetscErrorCode CheckRoom(Vtk *vtk, EqmScalarType type, PetscInt64 count)
+{
+  const size_t bytes_each = vtk->ascii ? 2 : EqmScalarSize(type);
+
+  if (count >= 0 && (size_t)count <= (EqmRemaining(vtk->in) + 1) / bytes_each) return 0;
+  return EqmReject(vtk->in, EQM_ERR_IO,
+                   "%lld numbers are announced, but the file is too short for them: it is truncated", (long long)count);
+}
+
+static PetscErrorCode ReadReals(Vtk *vtk, EqmScalarType type, PetscInt64 count, PetscReal *values)
+{
+  const char *bytes;
+
+  if (vtk->ascii) {
+    for (PetscInt64 i = 0; i < count; ++i) {
+      EqmSkipSpace(vtk->in, 0);
+      if (!EqmReadReal(vtk->in, &values[i])) return EqmReject(vtk->in, EQM_ERR_IO, "a number is missing");
+    }
+    return 0;
+  }
+  EqmTry(EqmTakeBytes(vtk->in, (size_t)count * EqmScalarSize(type), "data", &bytes));
+  for (PetscInt64 i = 0; i < count; ++i) {
+    values[i] = EqmLoadReal(bytes + (size_t)i * EqmScalarSize(type), type, PETSC_TRUE);
+  }
+  return 0;
+}
+
+/* Whole numbers into an array that is allocated here. */
+static PetscErrorCode ReadIntegers(Vtk *vtk, EqmScalarType type, PetscInt64 count, PetscInt64 **values)
+{
+  const char *bytes;
+
+  EqmTry(CheckRoom(vtk, type, count));
+  EqmTry(PetscMalloc1(count + 1, values));
+  if (vtk->ascii) {
+    for (PetscInt64 i = 0; i < count; ++i) {
+      EqmSkipSpace(vtk->in, 0);
+      if (!EqmReadInteger(vtk->in, &(*values)[i])) return EqmReject(vtk->in, EQM_ERR_IO, "a whole number is missing");
+    }
+    return 0;
+  }
+  EqmTry(EqmTakeBytes(vtk->in, (size_t)count * EqmScalarSize(type), "data", &bytes));
+  for (PetscInt64 i = 0; i < count; ++i) {
+    (*values)[i] = EqmLoadInteger(bytes + (size_t)i * EqmScalarSize(type), type, PETSC_TRUE);
+  }
+  return 0;
+}
+
+static PetscErrorCode ReadTwoCounts(Vtk *vtk, PetscInt64 *first, PetscInt64 *second)
+{
+  if (EqmReadInteger(vtk->in, first) && EqmReadInteger(vtk->in, second) && *first >= 0 && *second >= 0) return 0;
+  return EqmReject(vtk->in, EQM_ERR_IO, "two numbers must follow the name of a section");
+}
+
+static PetscErrorCode ParsePoints(Vtk *vtk)
+{
+  PetscInt64 count;
+  EqmScalarType type;
+  PetscReal *x;
+
+  EqmTry(EqmReadCount(vtk->in, "points", 3, &count));
+  EqmTry(ParseType(vtk->in, &type));
+  EqmSkipLine(vtk->in);
+  if (vtk->builder.num_vertices) return EqmReject(vtk->in, EQM_ERR_IO, "a second section POINTS");
+  EqmTry(CheckRoom(vtk, type, 3 * count));
+  EqmTry(EqmBuilderAddVertices(&vtk->builder, (size_t)count, &x));
+  return ReadReals(vtk, type, 3 * count, x);
+}
+
+/* Before version 5: each cell is its number of corners and the corners, in one array. */
+static PetscErrorCode SplitCells(Vtk *vtk, PetscInt64 num_cells, PetscInt64 size, EqmVtkCells *cells)
+{
+  PetscInt64 from = 0, to = 0;
+
+  if (num_cells > size) return EqmReject(vtk->in, EQM_ERR_IO, "more cells are announced than numbers for them");
+  EqmTry(ReadIntegers(vtk, EQM_SCALAR_INT32, size, &cells->corners));
+  EqmTry(PetscMalloc1(num_cells + 1, &cells->end));
+  for (PetscInt64 i = 0; i < num_cells; ++i) {
+    const PetscInt64 num_corners = from < size ? cells->corners[from++] : -1;
+
+    if (num_corners < 0 || num_corners > size - from) {
+      return EqmReject(vtk->in, EQM_ERR_IO, "cell %lld does not fit into the numbers of its section", (long long)i);
+    }
+    for (PetscInt64 k = 0; k < num_corners; ++k) cells->corners[to++] = cells->corners[from++];
+    cells->end[i] = to;
+  }
+  cells->num_cells = num_cells;
+  cells->num_corners = to;
+  return 0;
+}
+
+/* From version 5 on: one offset more than there are cells, and the corners. */
+static PetscErrorCode ReadOffsets(Vtk *vtk, PetscInt64 num_offsets, PetscInt64 num_corners, EqmVtkCells *cells)
+{
+  EqmScalarType type;
+
+  EqmTry(ParseType(vtk->in, &type));
+  EqmSkipLine(vtk->in);
+  EqmTry(ReadIntegers(vtk, type, num_offsets, &cells->end));
+  EqmSkipSpace(vtk->in, 0);
+  if (!EqmReadKeyword(vtk->in, "CONNECTIVITY"))
+    return EqmReject(vtk->in, EQM_ERR_IO, "CONNECTIVITY must follow OFFSETS");
+  EqmTry(ParseType(vtk->in, &type));
+  EqmSkipLine(vtk->in);
+  EqmTry(ReadIntegers(vtk, type, num_corners, &cells->corners));
+  cells->num_cells = PetscMax(num_offsets - 1, 0);
+  cells->num_corners = num_corners;
+  for (PetscInt64 i = 0; i < cells->num_cells; ++i) cells->end[i] = cells->end[i + 1]; /* the first offset is 0 */
+  return 0;
+}
+
+static PetscErrorCode ReadCells(Vtk *vtk, EqmVtkCells *cells)
+{
+  PetscInt64 first, second;
+  EqmInput after;
+
+  EqmTry(ReadTwoCounts(vtk, &first, &second));
+  EqmSkipLine(vtk->in);
+  after = *vtk->in;
+  EqmSkipSpace(&after, 0);
+  if (EqmReadKeyword(&after, "OFFSETS")) {
+    vtk->in->cursor = after.cursor;
+    return ReadOffsets(vtk, first, second, cells);
+  }
+  return SplitCells(vtk, first, second, cells);
+}
+
+/* Cells of a surface (`kept`), or vertices, lines and strips beside it. */
+static PetscErrorCode ParsePolygons(Vtk *vtk, PetscBool kept)
+{
+  EqmVtkCells cells = {0};
+  PetscErrorCode code = ReadCells(vtk, &cells);
+
+  if (!code && kept) code = EqmBuilderAddVtkCells(&vtk->builder, &cells, 0, (PetscInt64)vtk->builder.num_vertices);
+  EqmTry(EqmVtkCellsReset(&cells));
+  return code;
+}
+
+static PetscErrorCode ParseGridCells(Vtk *vtk)
+{
+  if (vtk->cells.end) return EqmReject(vtk->in, EQM_ERR_IO, "a second section CELLS");
+  return ReadCells(vtk, &vtk->cells);
+}
+
+static PetscErrorCode ParseCellTypes(Vtk *vtk)
+{
+  PetscInt64 count;
+
+  if (vtk->cells.type) return EqmReject(vtk->in, EQM_ERR_IO, "a second section CELL_TYPES");
+  if (!EqmReadInteger(vtk->in, &count) || count != vtk->cells.num_cells) {
+    return EqmReject(vtk->in, EQM_ERR_IO, "CELL_TYPES needs as many types as CELLS before it has cells (%lld)",
+                     (long long)vtk->cells.num_cells);
+  }
+  EqmSkipLine(vtk->in);
+  return ReadIntegers(vtk, EQM_SCALAR_INT32, count, &vtk->cells.type);
+}
+
+/* Arrays that belong to the file, not to its points or cells. */
+static PetscErrorCode SkipField(Vtk *vtk)
+{
+  const char *word, *bytes;
+  PetscInt64 num_arrays, width, length;
+  EqmScalarType type;
+
+  EqmReadWord(vtk->in, &word);
+  EqmTry(EqmReadCount(vtk->in, "arrays", 8, &num_arrays));
+  for (PetscInt64 a = 0; a < num_arrays; ++a) {
+    EqmSkipSpace(vtk->in, 0);
+    EqmReadWord(vtk->in, &word);
+    EqmTry(ReadTwoCounts(vtk, &width, &length));
+    EqmTry(ParseType(vtk->in, &type));
+    EqmSkipLine(vtk->in);
+    if (width && length > (PetscInt64)EqmRemaining(vtk->in) / width) {
+      return EqmReject(vtk->in, EQM_ERR_IO, "the file ends inside an array: it is truncated");
+    }
+    if (!vtk->ascii) EqmTry(EqmTakeBytes(vtk->in, (size_t)(width * length) * EqmScalarSize(type), "array", &bytes));
+    for (PetscInt64 i = 0; vtk->ascii && i < width * length; ++i) {
+      EqmSkipSpace(vtk->in, 0);
+      if (!EqmReadWord(vtk->in, &word)) return EqmReject(vtk->in, EQM_ERR_IO, "the file ends inside an array");
+    }
+  }
+  return 0;
+}
+
+static void SkipMetadata(EqmInput *in)
+{
+  EqmSkipLine(in);
+  while (in->cursor < in->end && !EqmAtLineEnd(in)) EqmSkipLine(in);
+}
+
+static PetscErrorCode ParseSection(Vtk *vtk, PetscBool *last)
+{
+  EqmInput *in = vtk->in;
+
+  if (EqmReadKeyword(in, "POINTS")) return ParsePoints(vtk);
+  if (vtk->polydata && EqmReadKeyword(in, "POLYGONS")) return ParsePolygons(vtk, PETSC_TRUE);
+  if (vtk->polydata && EqmReadKeyword(in, "VERTICES")) return ParsePolygons(vtk, PETSC_FALSE);
+  if (vtk->polydata && EqmReadKeyword(in, "LINES")) return ParsePolygons(vtk, PETSC_FALSE);
+  if (vtk->polydata && EqmReadKeyword(in, "TRIANGLE_STRIPS")) {
+    EqmBuilderNoteOther(&vtk->builder, 2, in->cursor, "a triangle strip");
+    return ParsePolygons(vtk, PETSC_FALSE);
+  }
+  if (!vtk->polydata && EqmReadKeyword(in, "CELLS")) return ParseGridCells(vtk);
+  if (!vtk->polydata && EqmReadKeyword(in, "CELL_TYPES")) return ParseCellTypes(vtk);
+  if (EqmReadKeyword(in, "FIELD")) return SkipField(vtk);
+  if (EqmReadKeyword(in, "METADATA")) {
+    SkipMetadata(in);
+    return 0;
+  }
+  *last = EqmReadKeyword(in, "POINT_DATA") || EqmReadKeyword(in, "CELL_DATA") ? PETSC_TRUE : PETSC_FALSE;
+  if (*last) return 0;
+  return EqmReject(in, EQM_ERR_IO,
+                   "a section was expected (POINTS, POLYGONS, CELLS, CELL_TYPES, ...): the file is damaged");
+}
+
+static PetscErrorCode ParseHeader(Vtk *vtk)
+{
+  EqmInput *in = vtk->in;
+
+  EqmSkipLine(in); /* # vtk DataFile Version x.x */
+  EqmSkipLine(in); /* title */
+  EqmSkipSpace(in, 0);
+  vtk->ascii = EqmReadKeyword(in, "ASCII");
+  if (!vtk->ascii && !EqmReadKeyword(in, "BINARY")) return EqmReject(in, EQM_ERR_IO, "ASCII or BINARY must stand here");
+  EqmSkipSpace(in, 0);
+  if (!EqmReadKeyword(in, "DATASET")) return EqmReject(in, EQM_ERR_IO, "DATASET must stand here");
+  vtk->polydata = EqmReadKeyword(in, "POLYDATA");
+  if (vtk->polydata || EqmReadKeyword(in, "UNSTRUCTURED_GRID")) return 0;
+  return EqmReject(in, EQM_ERR_IO,
+                   "this kind of data set is not a mesh of triangles or tetrahedra; POLYDATA and "
+                   "UNSTRUCTURED_GRID are");
+}
+
+static PetscErrorCode ParseMesh(Vtk *vtk)
+{
+  PetscBool last = PETSC_FALSE;
+
+  if (!EqmRecogniseVtk(vtk->in->start, EqmRemaining(vtk->in))) {
+    return EqmReject(vtk->in, EQM_ERR_IO, "a VTK file begins with \"# vtk DataFile Version\"");
+  }
+  EqmTry(ParseHeader(vtk));
+  vtk->in->binary = vtk->ascii ? PETSC_FALSE : PETSC_TRUE;
+  for (EqmSkipSpace(vtk->in, 0); vtk->in->cursor < vtk->in->end && !last; EqmSkipSpace(vtk->in, 0)) {
+    EqmTry(ParseSection(vtk, &last));
+  }
+  if (vtk->cells.end && !vtk->cells.type)
+    return EqmReject(vtk->in, EQM_ERR_IO, "CELL_TYPES is missing: the file is truncated");
+  return EqmBuilderAddVtkCells(&vtk->builder, &vtk->cells, 0, (PetscInt64)vtk->builder.num_vertices);
+}
+
+/* EqmParseVtk - read a legacy VTK file. See EqmParser. */
+PetscErrorCode EqmParseVtk(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+{
+  EqmInput in;
+  Vtk vtk = {0};
+  PetscErrorCode code;
+
+  EqmInputOpen(&in, bytes, length, error, error_length);
+  vtk.in = &in;
+  EqmBuilderOpen(&vtk.builder, &in);
+  code = ParseMesh(&vtk);
+  EqmTry(EqmVtkCellsReset(&vtk.cells));
+  return EqmBuilderFinish(&vtk.builder, code, mesh);
+}

@@ -1,0 +1,185 @@
+/* VTK's XML files of unstructured grids (.vtu) and surfaces (.vtp). */
+#define _GNU_SOURCE
+#include "format.h"
+#include "vtkcells.h"
+#include "vtuarray.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* EqmRecogniseVtu - an element VTKFile near the beginning. Not collective. */
+PetscBool EqmRecogniseVtu(const char *bytes, size_t length)
+{
+  return memmem(bytes, PetscMin(length, 4096), "<VTKFile", 8) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* What the root element says about the arrays. */
+static PetscErrorCode ParseEncoding(EqmVtuEncoding *encoding, xmlNodePtr root)
+{
+  char text[64];
+
+  EqmXmlAttribute(root, "byte_order", text, sizeof(text));
+  encoding->big_endian = strcmp(text, "BigEndian") ? PETSC_FALSE : PETSC_TRUE;
+  EqmXmlAttribute(root, "header_type", text, sizeof(text));
+  encoding->header = strcmp(text, "UInt64") ? EQM_SCALAR_UINT32 : EQM_SCALAR_UINT64;
+  if (text[0] && strcmp(text, "UInt64") && strcmp(text, "UInt32")) {
+    return EqmXmlReject(encoding->in, root, "unknown header_type \"%s\"; known are UInt32 and UInt64", text);
+  }
+  EqmXmlAttribute(root, "compressor", text, sizeof(text));
+  encoding->compressed = text[0] ? PETSC_TRUE : PETSC_FALSE;
+  if (encoding->compressed && strcmp(text, "vtkZLibDataCompressor")) {
+    return EqmXmlReject(encoding->in, root,
+                        "the compressor %s is not supported; save with vtkZLibDataCompressor or without", text);
+  }
+  EqmXmlAttribute(EqmXmlChild(root, "AppendedData"), "encoding", text, sizeof(text));
+  encoding->appended_base64 = strcmp(text, "base64") ? PETSC_FALSE : PETSC_TRUE;
+  return 0;
+}
+
+/* The DataArray of this name, or (NULL) the first one. */
+static PetscErrorCode FindArray(EqmInput *in, xmlNodePtr parent, const char *name, xmlNodePtr *array)
+{
+  char found[64];
+
+  for (*array = EqmXmlChild(parent, "DataArray"); *array; *array = EqmXmlNext(*array, "DataArray")) {
+    EqmXmlAttribute(*array, "Name", found, sizeof(found));
+    if (!name || !strcmp(found, name)) return 0;
+  }
+  return EqmXmlReject(in, parent, "it has no DataArray %s", name ? name : "of coordinates");
+}
+
+static PetscErrorCode ParsePoints(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr piece,
+                                  PetscInt64 *num_points)
+{
+  xmlNodePtr points = EqmXmlChild(piece, "Points"), array;
+  PetscInt64 width = 3;
+  PetscReal *x;
+
+  if (!EqmXmlInteger(piece, "NumberOfPoints", num_points) || *num_points < 0) {
+    return EqmXmlReject(encoding->in, piece, "NumberOfPoints is missing or not a whole number");
+  }
+  if (!*num_points) return 0;
+  if (!points) return EqmXmlReject(encoding->in, piece, "it has no Points");
+  EqmTry(FindArray(encoding->in, points, NULL, &array));
+  if (!EqmXmlInteger(array, "NumberOfComponents", &width) || width != 3) {
+    return EqmXmlReject(encoding->in, array, "points need NumberOfComponents=\"3\"");
+  }
+  if (*num_points > PETSC_MAX_INT) return EqmXmlReject(encoding->in, piece, "more points than indices can count");
+  EqmTry(EqmVtuCheckRoom(encoding, array, 3 * *num_points));
+  EqmTry(EqmBuilderAddVertices(builder, (size_t)*num_points, &x));
+  return EqmVtuReadReals(encoding, array, 3 * *num_points, x);
+}
+
+/* Types (of grids, not of surfaces), offsets and connectivity, whose length the last offset tells. */
+static PetscErrorCode ReadCells(const EqmVtuEncoding *encoding, xmlNodePtr parent, PetscBool has_types,
+                                EqmVtkCells *cells)
+{
+  xmlNodePtr array;
+
+  if (has_types) {
+    EqmTry(FindArray(encoding->in, parent, "types", &array));
+    EqmTry(EqmVtuReadIntegers(encoding, array, cells->num_cells, &cells->type));
+  }
+  EqmTry(FindArray(encoding->in, parent, "offsets", &array));
+  EqmTry(EqmVtuReadIntegers(encoding, array, cells->num_cells, &cells->end));
+  cells->num_corners = cells->end[cells->num_cells - 1];
+  EqmTry(FindArray(encoding->in, parent, "connectivity", &array));
+  return EqmVtuReadIntegers(encoding, array, cells->num_corners, &cells->corners);
+}
+
+static PetscErrorCode ParsePiece(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr piece,
+                                 PetscBool surface)
+{
+  const PetscInt64 first_vertex = (PetscInt64)builder->num_vertices;
+  const char *attribute = surface ? "NumberOfPolys" : "NumberOfCells", *element = surface ? "Polys" : "Cells";
+  EqmVtkCells cells = {0};
+  PetscInt64 num_points, num_strips;
+  PetscErrorCode code;
+
+  EqmTry(ParsePoints(encoding, builder, piece, &num_points));
+  if (!EqmXmlInteger(piece, attribute, &cells.num_cells) || cells.num_cells < 0) {
+    return EqmXmlReject(encoding->in, piece, "%s is missing or not a whole number", attribute);
+  }
+  if (surface && EqmXmlInteger(piece, "NumberOfStrips", &num_strips) && num_strips > 0) {
+    EqmBuilderNoteOther(builder, 2, NULL, "the surface has triangle strips");
+  }
+  if (!cells.num_cells) return 0;
+  if (!EqmXmlChild(piece, element)) return EqmXmlReject(encoding->in, piece, "it has no %s", element);
+  code = ReadCells(encoding, EqmXmlChild(piece, element), surface ? PETSC_FALSE : PETSC_TRUE, &cells);
+  if (!code) code = EqmBuilderAddVtkCells(builder, &cells, first_vertex, num_points);
+  EqmTry(EqmVtkCellsReset(&cells));
+  return code;
+}
+
+static PetscErrorCode ParseDocument(EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr root)
+{
+  xmlNodePtr grid, surface;
+  char type[32];
+
+  EqmXmlAttribute(root, "type", type, sizeof(type));
+  if (!EqmXmlIs(root, "VTKFile")) return EqmXmlReject(encoding->in, root, "a VTU file has the root element VTKFile");
+  grid = EqmXmlChild(root, "UnstructuredGrid");
+  surface = EqmXmlChild(root, "PolyData");
+  if (!grid && !surface) {
+    return EqmXmlReject(encoding->in, root,
+                        "type \"%s\" is no mesh of triangles or tetrahedra; UnstructuredGrid and PolyData "
+                        "are",
+                        type);
+  }
+  EqmTry(ParseEncoding(encoding, root));
+  for (xmlNodePtr piece = EqmXmlChild(grid ? grid : surface, "Piece"); piece; piece = EqmXmlNext(piece, "Piece")) {
+    EqmTry(ParsePiece(encoding, builder, piece, grid ? PETSC_FALSE : PETSC_TRUE));
+  }
+  return 0;
+}
+
+/* Appended raw data is not XML: the document is what stands before it, with the open elements closed. */
+static PetscErrorCode CutAppended(EqmVtuEncoding *encoding, char **document, size_t *length)
+{
+  static const char tail[] = "</AppendedData></VTKFile>";
+  EqmInput *in = encoding->in;
+  const char *tag = memmem(in->start, (size_t)(in->end - in->start), "<AppendedData", 13);
+  const char *close = tag ? memchr(tag, '>', (size_t)(in->end - tag)) : NULL;
+  const char *underscore = close ? memchr(close, '_', (size_t)(in->end - close)) : NULL;
+
+  *document = NULL;
+  *length = (size_t)(in->end - in->start);
+  if (!tag) return 0;
+  if (!underscore) return EqmRejectAt(in, tag, EQM_ERR_IO, "no data in AppendedData: the file is truncated");
+  encoding->appended = underscore + 1;
+  encoding->appended_length = (size_t)(in->end - underscore) - 1;
+  *length = (size_t)(close + 1 - in->start);
+  *document = malloc(*length + sizeof(tail));
+  if (!*document) return PETSC_ERR_MEM;
+  memcpy(*document, in->start, *length);
+  memcpy(*document + *length, tail, sizeof(tail));
+  *length += sizeof(tail) - 1;
+  return 0;
+}
+
+static PetscErrorCode ParseMesh(EqmVtuEncoding *encoding, EqmBuilder *builder)
+{
+  xmlDocPtr document;
+  char *copy;
+  size_t length;
+  PetscErrorCode code;
+
+  EqmTry(CutAppended(encoding, &copy, &length));
+  code = EqmXmlParse(encoding->in, copy ? copy : encoding->in->start, length, &document);
+  if (!code) code = ParseDocument(encoding, builder, xmlDocGetRootElement(document));
+  if (document) xmlFreeDoc(document);
+  free(copy);
+  return code;
+}
+
+/* EqmParseVtu - read a VTU or VTP file. See EqmParser. */
+PetscErrorCode EqmParseVtu(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+{
+  EqmInput in;
+  EqmBuilder builder;
+  EqmVtuEncoding encoding = {.in = &in};
+
+  EqmInputOpen(&in, bytes, length, error, error_length);
+  EqmBuilderOpen(&builder, &in);
+  return EqmBuilderFinish(&builder, ParseMesh(&encoding, &builder), mesh);
+}

@@ -1,0 +1,9 @@
+/* Vertices that are one because they lie at the same place. */
+#ifndef EQM_FORMAT_WELD_H
+#define EQM_FORMAT_WELD_H
+
+#include <equimap/base.h>
+
+PETSC_INTERN PetscErrorCode EqmWeld(size_t num_points, PetscReal *points, size_t *num_distinct, PetscInt *number);
+
+#endif
