@@ -13,7 +13,7 @@ quietly() {
   local log=$demo/log.txt
   "$@" >"$log" 2>&1 && return 0
   local code=$?
-  tail -n 20 "$log" >&2
+  tail -n 20 "$log" | cut -c1-300 >&2
   say "failed: $*" >&2
   return $code
 }
@@ -23,7 +23,7 @@ mkdir -p "$demo"
 
 say "building"
 [ -f build/CMakeCache.txt ] || quietly cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
-quietly cmake --build build --target equimap -j "$(nproc)"
+quietly cmake --build build -j "$(nproc)" --target equimap
 
 # A scanned mask from a Debian package that is unpacked here, not installed.
 scan=$demo/mannequin-devil.off
@@ -57,7 +57,7 @@ OMP_NUM_THREADS=${OMP_NUM_THREADS:-1} mpirun -n "$ranks" --oversubscribe --bind-
   >"$demo/log.txt" 2>&1 || code=$?
 case $code in
   0 | 4 | 5) ;; # 4: not converged, 5: folds remain; the map is there
-  *) tail -n 20 "$demo/log.txt" >&2; say "equimap ended with exit code $code" >&2; exit "$code" ;;
+  *) tail -n 20 "$demo/log.txt" | cut -c1-300 >&2; say "equimap ended with exit code $code" >&2; exit "$code" ;;
 esac
 quietly build/equimap report "$demo/result.h5" -o "$demo/result.png"
 

@@ -1,0 +1,36 @@
+# Installation: the program, the library, the headers, presets, and two ways to find them: a CMake package (equimap::equimap)
+# and pkg-config (equimap). Included at the end of the main CMakeLists.txt.
+include(CMakePackageConfigHelpers)
+set(EQUIMAP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/equimap)
+
+install(TARGETS equimap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS libequimap EXPORT equimapTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/equimap/config OPTIONAL)
+install(EXPORT equimapTargets NAMESPACE equimap:: DESTINATION ${EQUIMAP_PACKAGE_DIR})
+
+# A static library does not say what it stands on: its users link that, too.
+if(BUILD_SHARED_LIBS)
+  set(EQUIMAP_STATIC FALSE)
+else()
+  set(EQUIMAP_STATIC TRUE)
+endif()
+configure_package_config_file(cmake/equimapConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/equimapConfig.cmake
+                              INSTALL_DESTINATION ${EQUIMAP_PACKAGE_DIR})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/equimapConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/equimapConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/equimapConfigVersion.cmake
+        DESTINATION ${EQUIMAP_PACKAGE_DIR})
+
+set(EQUIMAP_PC_REQUIRES "libxml-2.0, libcjson, zlib")
+if(CAIRO_FOUND)
+  string(APPEND EQUIMAP_PC_REQUIRES ", cairo")
+endif()
+string(REPLACE ";" " " EQUIMAP_PC_LIBS
+       "${HDF5_LIBRARIES};${MUMPS_LIBRARY};${METIS_LIBRARY};${CHOLMOD_LIBRARY};${OpenMP_C_FLAGS};-lm")
+if(EQUIMAP_STATIC)
+  set(EQUIMAP_PC_PUBLIC_REQUIRES ", ${EQUIMAP_PC_REQUIRES}")
+  set(EQUIMAP_PC_PUBLIC_LIBS " ${EQUIMAP_PC_LIBS}")
+endif()
+configure_file(cmake/equimap.pc.in ${CMAKE_CURRENT_BINARY_DIR}/equimap.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/equimap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Install a build, then build a small program against the installed tree twice, with find_package and with pkg-config, and
+# run both. The library's own folders must not be needed.
+#   tests/consumer/run.sh BUILD_FOLDER
+set -euo pipefail
+source_folder=$(cd "$(dirname "$0")" && pwd)
+build=$(cd "${1:?usage: tests/consumer/run.sh BUILD_FOLDER}" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+if [ "$(id -u)" -eq 0 ]; then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+run() { mpirun -n 2 --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 "$@"; }
+
+# Installed elsewhere than the build was configured for: the CMake package moves along, pkg-config is told its prefix.
+cmake --install "$build" --prefix "$work/installed" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
+installed=$work/installed
+"$installed/bin/equimap" --version
+
+cmake -S "$source_folder" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$installed" >"$work/cmake.log" || { cat "$work/cmake.log"; exit 1; }
+cmake --build "$work/cmake" >"$work/make.log" || { cat "$work/make.log"; exit 1; }
+echo "find_package:"
+run "$work/cmake/consumer"
+
+pc=$(dirname "$(find "$installed" -name equimap.pc)")
+export PKG_CONFIG_PATH=$pc${PKG_CONFIG_PATH:+:$PKG_CONFIG_PATH}
+flags=$(pkg-config --define-variable=prefix="$installed" --cflags --libs equimap)
+# shellcheck disable=SC2086 # flags are words
+mpicc -std=c11 -o "$work/consumer" "$source_folder/main.c" $flags
+echo "pkg-config:"
+run "$work/consumer"
