@@ -76,8 +76,8 @@ static PetscErrorCode PrintCounts(const CheckReport *report)
                         d->num_components, solid ? "boundary surfaces" : "boundary loops", d->num_boundary_loops,
                         d->euler_characteristic));
   if (d->genus >= 0) PetscCall(PetscPrintf(comm, ", genus %" PetscInt64_FMT, d->genus));
-  PetscCall(PetscPrintf(comm, "\n  %-16s  %g (%ss from %.3g to %.3g)\n", solid ? "volume" : "area", (double)d->measure,
-                        solid ? "tetrahedron" : "triangle", (double)d->smallest_cell, (double)d->largest_cell));
+  PetscCall(PetscPrintf(comm, "\n  %-16s  %g (cells from %.3g to %.3g)\n", solid ? "volume" : "area",
+                        (double)d->measure, (double)d->smallest_cell, (double)d->largest_cell));
   PetscCall(PetscPrintf(comm, "  worst quality     %.3g (0 flat, 1 equilateral)\n", (double)d->worst_cell_quality));
   PetscFunctionReturn(0);
 }
@@ -125,7 +125,7 @@ static PetscErrorCode PrintVerdicts(CheckReport *report)
     report->takes[t] = (PetscBool)!fatal;
     if (!fatal) report->status = EQM_STATUS_CONVERGED;
     PetscCall(PetscSNPrintf(head, sizeof(head), "  %-10s%s", targets[t], fatal ? "no   " : "yes  "));
-    PetscCall(PrintLines(head, text, PETSC_TRUE));
+    PetscCall(PrintLines(head, strchr(text, ' ') + 1, PETSC_TRUE)); /* "error: " and "good: " are yes and no already */
   }
   PetscFunctionReturn(0);
 }

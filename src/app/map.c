@@ -9,6 +9,8 @@ typedef struct {
 
 static PetscErrorCode AskOptions(MapOptions *options)
 {
+  PetscInt threads = omp_get_max_threads(); /* taken by main before any command; asked here to be listed by --help */
+
   PetscFunctionBegin;
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
   PetscCall(PetscOptionsString("-o", "where the map goes: .h5 (everything, with an .xmf for ParaView), .obj .off .ply .vtu .msh .gii; several with commas", NULL, "", options->output,
@@ -18,7 +20,7 @@ static PetscErrorCode AskOptions(MapOptions *options)
   PetscCall(PetscOptionsString("-density", "a positive weight per cell (CSV with a header, or /cell/density of an HDF5 file): keep mass instead of area", NULL, "", options->density,
                                sizeof(options->density), &options->has_density));
   PetscCall(PetscOptionsBool("-repair", "mend first what is safe to mend (see equimap check)", NULL, options->repair, &options->repair, NULL));
-  PetscCall(PetscOptionsInt("-threads", "threads per rank (0: OMP_NUM_THREADS or all the cores that the rank may use)", NULL, 0, NULL, NULL));
+  PetscCall(PetscOptionsInt("-threads", "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL, threads, &threads, NULL));
   PetscOptionsEnd();
   PetscFunctionReturn(0);
 }

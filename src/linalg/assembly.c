@@ -79,7 +79,8 @@ PetscErrorCode EqmAssemblyCreate(EqmMesh mesh, const EqmUnknowns *unknowns, EqmS
   PetscCall(MatSetType(assembly->matrix, MATAIJ));
   PetscCall(MatSetPreallocationCOO(assembly->matrix, num_entries, row, column));
   PetscCall(PetscFree2(row, column));
-  PetscCall(PetscMalloc1(num_entries, &assembly->values));
+  PetscCall(PetscCalloc1(num_entries, &assembly->values));
+  PetscCall(MatSetValuesCOO(assembly->matrix, assembly->values, INSERT_VALUES)); /* the rows can be read from now on */
   *out = assembly;
   PetscFunctionReturn(0);
 }

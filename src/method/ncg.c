@@ -5,7 +5,7 @@ enum { BETA_FR, BETA_PR, BETA_HZ };
 static const char *const ncg_betas[] = {"fletcher-reeves", "polak-ribiere", "hager-zhang", "EqmNcgBeta", "EQM_NCG_", NULL};
 
 typedef struct {
-  Vec gradient, preconditioned, direction, old_gradient, old_preconditioned;
+  Vec gradient, preconditioned, direction, old_gradient, old_preconditioned, trial_gradient;
   PetscReal *weights, *columns, *image;
   signed char *group;
   EqmPlace trial;
@@ -67,6 +67,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(VecDuplicate(ncg->gradient, &ncg->direction));
   PetscCall(VecDuplicate(ncg->gradient, &ncg->old_gradient));
   PetscCall(VecDuplicate(ncg->gradient, &ncg->old_preconditioned));
+  PetscCall(VecDuplicate(ncg->gradient, &ncg->trial_gradient));
   PetscCall(EqmPlaceCreate(solver->domain, &ncg->trial));
   PetscCall(RefreshPreconditioner(solver));
   PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, ncg->gradient));
@@ -74,7 +75,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(Precondition(solver, ncg->gradient, ncg->preconditioned));
   PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
   PetscCall(VecScale(ncg->direction, -1.));
-  ncg->alpha = 2.; /* 000 section 3.1 */
+  ncg->alpha = 2. * solver->domain->target_measure; /* 000 section 3.1, where the mesh has the area of the target, not one */
   PetscFunctionReturn(0);
 }
 
@@ -89,6 +90,7 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscCall(VecDestroy(&ncg->direction));
   PetscCall(VecDestroy(&ncg->old_gradient));
   PetscCall(VecDestroy(&ncg->old_preconditioned));
+  PetscCall(VecDestroy(&ncg->trial_gradient));
   PetscCall(EqmPlaceDestroy(&ncg->trial));
   PetscCall(PetscFree(solver->data));
   PetscFunctionReturn(0);
@@ -118,25 +120,35 @@ static PetscErrorCode ParabolaStep(EqmSolver solver, PetscReal slope, PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* What the convergence theorem takes for granted and (18) does not give: sufficient decrease and an ordered boundary. The
-   step is shortened until both hold; `alpha` 0 if none does. */
-static PetscErrorCode Safeguard(EqmSolver solver, PetscReal slope, PetscReal *alpha)
+/* Energy and gradient at the trial place for step length alpha. */
+static PetscErrorCode TryGradient(EqmSolver solver, PetscReal alpha, PetscReal *energy)
 {
   Ncg *const ncg = solver->data;
-  enum { MOST_CUTS = 30 };
 
   PetscFunctionBegin;
-  for (PetscInt cut = 0; cut < MOST_CUTS; cut++) {
-    PetscReal energy;
+  PetscCall(EqmDomainMove(solver->domain, &solver->place, alpha, ncg->direction, &ncg->trial));
+  PetscCall(EqmAuthalicEnergy(solver->domain, &ncg->trial, ncg->image, energy, ncg->trial_gradient));
+  PetscFunctionReturn(0);
+}
+
+/* What the convergence theorem takes for granted and (18) does not give: sufficient decrease and an ordered boundary. The
+   step is shortened until both hold; `alpha` 0 if none does. Leaves map, energy and gradient of the step in the trial. */
+static PetscErrorCode Safeguard(EqmSolver solver, PetscReal slope, PetscReal *alpha, PetscReal *energy)
+{
+  Ncg *const ncg = solver->data;
+  const PetscInt most_cuts = solver->settings.ncg_guard ? 30 : 0;
+
+  PetscFunctionBegin;
+  PetscCall(TryGradient(solver, *alpha, energy));
+  for (PetscInt cut = 0; cut < most_cuts; cut++) {
     PetscBool in_order;
-    PetscCall(EqmDomainMove(solver->domain, &solver->place, *alpha, ncg->direction, &ncg->trial));
     PetscCall(EqmDomainBoundaryInOrder(solver->domain, &ncg->trial, &in_order));
-    PetscCall(EqmAuthalicEnergy(solver->domain, &ncg->trial, ncg->image, &energy, NULL));
-    if (in_order && energy <= solver->objective + 1e-4 * *alpha * slope) PetscFunctionReturn(0);
-    const PetscReal curvature = energy - solver->objective - *alpha * slope, parabola = -*alpha * *alpha * slope / (2. * curvature);
+    if (in_order && *energy <= solver->objective + 1e-4 * *alpha * slope) PetscFunctionReturn(0);
+    const PetscReal curvature = *energy - solver->objective - *alpha * slope, parabola = -*alpha * *alpha * slope / (2. * curvature);
     *alpha = in_order && curvature > 0. ? PetscMin(.5 * *alpha, PetscMax(.1 * *alpha, parabola)) : .5 * *alpha;
+    PetscCall(TryGradient(solver, *alpha, energy));
   }
-  *alpha = 0.;
+  if (most_cuts) *alpha = 0.;
   PetscFunctionReturn(0);
 }
 
@@ -165,11 +177,26 @@ static PetscErrorCode ComputeBeta(EqmSolver solver, PetscReal old_product, Petsc
   PetscFunctionReturn(0);
 }
 
+/* The trial becomes the present map. */
+static PetscErrorCode AcceptTrial(EqmSolver solver, PetscReal alpha, PetscReal energy)
+{
+  Ncg *const ncg = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCopy(solver->domain, &ncg->trial, &solver->place));
+  PetscCall(PetscArraycpy(solver->image, ncg->image, solver->mesh->num_local_cells));
+  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
+  PetscCall(VecCopy(ncg->trial_gradient, ncg->gradient));
+  ncg->alpha = solver->step_length = alpha;
+  solver->objective = energy;
+  PetscFunctionReturn(0);
+}
+
 /* 000 Algorithm 1, lines 15-22. */
 static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 {
   Ncg *const ncg = solver->data;
-  PetscReal slope, alpha, old_product, beta = 0.;
+  PetscReal slope, alpha, energy, old_product, beta = 0.;
   const PetscInt refresh = solver->settings.ncg_refresh;
 
   PetscFunctionBegin;
@@ -182,16 +209,12 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   *outcome = EQM_STEP_STALLED;
   if (!(slope < 0.)) PetscFunctionReturn(0);
   PetscCall(ParabolaStep(solver, slope, &alpha));
-  if (solver->settings.ncg_guard) PetscCall(Safeguard(solver, slope, &alpha));
+  PetscCall(Safeguard(solver, slope, &alpha, &energy));
   if (alpha == 0.) PetscFunctionReturn(0);
-  PetscCall(EqmDomainMove(solver->domain, &solver->place, alpha, ncg->direction, &solver->place));
-  ncg->alpha = solver->step_length = alpha;
-
   PetscCall(VecDot(ncg->preconditioned, ncg->gradient, &old_product));
   PetscCall(VecCopy(ncg->gradient, ncg->old_gradient));
   PetscCall(VecCopy(ncg->preconditioned, ncg->old_preconditioned));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, ncg->gradient));
-  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
+  PetscCall(AcceptTrial(solver, alpha, energy));
   PetscCall(VecNorm(ncg->gradient, NORM_2, &solver->gradient_norm));
   const PetscBool refreshed = (PetscBool)(refresh > 0 && (solver->iteration + 1) % refresh == 0);
   if (refreshed) PetscCall(RefreshPreconditioner(solver));
