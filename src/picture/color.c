@@ -16,10 +16,11 @@ static int CompareDoubles(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* A scale on which all but about a fiftieth of the ratios have a colour of their own. Not collective. */
+/* A scale on which all but about a twentieth of the ratios have a colour of their own. Not collective. */
 EqmColorScale EqmColorScaleOf(const PetscReal *ratio, PetscInt count)
 {
-  static const double limits[] = {1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2, 4, 8, 16, 64, 256};
+  static const double limits[] = {1.0001, 1.0002, 1.0005, 1.001, 1.002, 1.005, 1.01, 1.02, 1.05,
+                                  1.1,    1.2,    1.5,    2,     4,     8,     16,   64,   256};
   enum { NUM_LIMITS = sizeof(limits) / sizeof(limits[0]), SAMPLES = 4096 };
   const PetscInt step = PetscMax(1, count / SAMPLES);
   EqmColorScale scale = {limits[0]};
@@ -31,7 +32,7 @@ EqmColorScale EqmColorScaleOf(const PetscReal *ratio, PetscInt count)
   }
   if (taken == 0) return scale;
   qsort(deviation, (size_t)taken, sizeof(deviation[0]), CompareDoubles);
-  while (k + 1 < NUM_LIMITS && log(limits[k]) < deviation[(int)(0.98 * (taken - 1))]) k++;
+  while (k + 1 < NUM_LIMITS && log(limits[k]) < deviation[(int)(0.95 * (taken - 1))]) k++;
   scale.limit = limits[k];
   return scale;
 }

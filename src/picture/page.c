@@ -39,6 +39,7 @@ static void DrawTitle(cairo_t *page, const EqmResult *result)
 static void DrawColorBar(cairo_t *page, const EqmResult *result, EqmColorScale scale, EqmBox box)
 {
   enum { STRIPES = 256 };
+  const int digits = 1 + (int)ceil(-log10(scale.limit - 1.0) - 1e-9); /* enough to tell the ticks apart */
 
   for (int k = 0; k < STRIPES; k++) {
     double rgb[3];
@@ -53,7 +54,10 @@ static void DrawColorBar(cairo_t *page, const EqmResult *result, EqmColorScale s
   cairo_stroke(page);
   for (int k = -2; k <= 2; k++) {
     char text[48];
-    (void)snprintf(text, sizeof(text), "%.3g", pow(scale.limit, 0.5 * k));
+    if (scale.limit > 1.15)
+      (void)snprintf(text, sizeof(text), "%.3g", pow(scale.limit, 0.5 * k));
+    else
+      (void)snprintf(text, sizeof(text), "%.*f", digits, pow(scale.limit, 0.5 * k));
     EqmDrawText(page, box.x + box.width * (0.5 + 0.25 * k), box.y + box.height + 17, 12, PETSC_FALSE, EQM_CENTER,
                 EQM_GREY, text);
   }

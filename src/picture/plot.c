@@ -72,15 +72,20 @@ static int LogarithmicTicks(const EqmAxis *axis, double *ticks)
   return count < 2 ? LinearTicks(axis, ticks) : count;
 }
 
-/* A tick's number; on an axis of many decades, the power of ten. */
+/* A tick's number: on an axis of many decades the power of ten, on a linear one as many decimals as tell ticks apart.
+ */
 static void TickText(const EqmAxis *axis, double tick, char *text, size_t length)
 {
-  const double span = axis->high - axis->low;
+  const double span = axis->high - axis->low, largest = fmax(fabs(axis->low), fabs(axis->high));
+  const double value = fabs(tick) < 1e-12 * span ? 0.0 : tick;
+  const int decimals = (int)fmax(0.0, -floor(log10(EvenStep(span, 5)) + 1e-9));
 
   if (axis->logarithmic && axis->high > 100.0 * axis->low)
     EqmPowerText(tick, text, length);
+  else if (axis->logarithmic || largest < 1e-3 || largest >= 1e5)
+    EqmNumberText(value, text, length);
   else
-    EqmNumberText(fabs(tick) < 1e-12 * span ? 0.0 : tick, text, length);
+    (void)snprintf(text, length, "%.*f", decimals, value);
 }
 
 static int Ticks(const EqmAxis *axis, double *ticks)

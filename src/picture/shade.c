@@ -39,6 +39,19 @@ static double EdgeDistance(const EqmRaster *raster, int x, int y, size_t s)
   return nearest;
 }
 
+/* Nothing is seen within `reach` samples: the outline of what is drawn. */
+static PetscBool IsOutline(const EqmRaster *raster, int x, int y, int reach)
+{
+  const int place[4][2] = {{x - reach, y}, {x + reach, y}, {x, y - reach}, {x, y + reach}};
+
+  for (int k = 0; k < 4; k++) {
+    const int px = place[k][0], py = place[k][1];
+    if (px < 0 || py < 0 || px >= raster->size || py >= raster->size) continue;
+    if (raster->face[(size_t)py * (size_t)raster->size + (size_t)px] < 0) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 static void ColorSample(const EqmRaster *raster, const EqmScene *scene, int x, int y, int oversampling, double rgb[3])
 {
   const size_t s = (size_t)y * (size_t)raster->size + (size_t)x;
@@ -56,6 +69,7 @@ static void ColorSample(const EqmRaster *raster, const EqmScene *scene, int x, i
   }
   if (scene->normals) light = 1.0 - scene->relief * (1.0 - Light(scene, v, weight));
   if (scene->edges > 0.0 && EdgeDistance(raster, x, y, s) < 0.5 * oversampling) light *= 1.0 - scene->edges;
+  if (IsOutline(raster, x, y, oversampling)) light *= 0.6;
   for (int c = 0; c < 3; c++) rgb[c] = fmin(1.0, rgb[c] * light);
 }
 
