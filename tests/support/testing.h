@@ -1,0 +1,157 @@
+/* What the tests of the library share: checks that say what is wrong, meshes ready for use, runs of the solver. */
+#ifndef EQM_TESTING_H
+#define EQM_TESTING_H
+
+#include <equimap.h>
+#include "method/method.h"
+#include <stdio.h>
+
+/* End all ranks with a message if `condition` does not hold; the other arguments are a format and its values. */
+#define CHECK(condition, ...)                                                                                          \
+  do {                                                                                                                 \
+    if (!(condition)) {                                                                                                \
+      fprintf(stderr, "%s:%d: not so: %s: ", __FILE__, __LINE__, #condition);                                          \
+      fprintf(stderr, __VA_ARGS__);                                                                                    \
+      fprintf(stderr, "\n");                                                                                           \
+      MPI_Abort(PETSC_COMM_WORLD, 1);                                                                                  \
+    }                                                                                                                  \
+  } while (0)
+
+/* `got` and `wanted` differ by no more than `tolerance` times `scale`. */
+#define CHECK_CLOSE(got, wanted, tolerance, scale)                                                                     \
+  CHECK(PetscAbsReal((got) - (wanted)) <= (tolerance) * (scale), "%.17g, not %.17g: off by %.3g of %.3g",              \
+        (double)(got), (double)(wanted), (double)(PetscAbsReal((got) - (wanted)) / (scale)), (double)(tolerance))
+
+/* An error is expected: its code must be `code`, and nobody prints it. */
+#define CHECK_FAILS(code, call)                                                                                        \
+  do {                                                                                                                 \
+    PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));                                                   \
+    const PetscErrorCode got_error = (call);                                                                           \
+    PetscCall(PetscPopErrorHandler());                                                                                 \
+    CHECK(got_error == (code), "error %d, not %d", (int)got_error, (int)(code));                                       \
+  } while (0)
+
+/* A number in [-1, 1] that belongs to an input vertex, and so is the same on any number of ranks. */
+static inline PetscReal TestRandom(PetscInt seed, PetscInt vertex, PetscInt channel)
+{
+  uint64_t x = 0x9e3779b97f4a7c15u * (uint64_t)(seed + 1) + 0xbf58476d1ce4e5b9u * (uint64_t)(vertex + 1) +
+               0x94d049bb133111ebu * (uint64_t)(channel + 1);
+
+  for (int round = 0; round < 3; round++) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    x ^= x >> 31;
+  }
+  return 2. * (PetscReal)(x >> 11) / 9007199254740992. - 1.;
+}
+
+/* A mesh with what it stands on. */
+typedef struct {
+  EqmLedger ledger;
+  EqmSoup soup;
+  EqmMesh mesh;
+} TestMesh;
+
+static inline PetscErrorCode TestMeshFromSoup(EqmSoup soup, TestMesh *test)
+{
+  PetscFunctionBegin;
+  test->soup = soup;
+  PetscCall(EqmLedgerCreate(soup->comm, &test->ledger));
+  PetscCall(EqmMeshCreate(soup, test->ledger, &test->mesh));
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode TestMeshCreate(MPI_Comm comm, const char *shape, PetscInt n, PetscInt seed, TestMesh *test)
+{
+  EqmSoup soup;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupGenerate(comm, shape, n, seed, &soup));
+  PetscCall(TestMeshFromSoup(soup, test));
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode TestMeshDestroy(TestMesh *test)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMeshDestroy(&test->mesh));
+  PetscCall(EqmSoupDestroy(&test->soup));
+  PetscCall(EqmLedgerDestroy(&test->ledger));
+  PetscFunctionReturn(0);
+}
+
+/* Options that hold until TestOptionsEnd. */
+static inline PetscErrorCode TestOptionsBegin(const char *text, PetscOptions *options)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsCreate(options));
+  PetscCall(PetscOptionsInsertString(*options, text));
+  PetscCall(PetscOptionsPush(*options));
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode TestOptionsEnd(PetscOptions *options)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsPop());
+  PetscCall(PetscOptionsDestroy(options));
+  PetscFunctionReturn(0);
+}
+
+/* Run the solver as the program would with these options. */
+static inline PetscErrorCode TestSolve(EqmMesh mesh, const char *target, const char *text, EqmSolver *solver)
+{
+  PetscOptions options;
+
+  PetscFunctionBegin;
+  PetscCall(TestOptionsBegin(text, &options));
+  PetscCall(PetscOptionsInsertString(options, "-quiet"));
+  PetscCall(EqmSolverCreate(mesh, target, solver));
+  PetscCall(EqmSolverSetFromOptions(*solver));
+  PetscCall(EqmSolverSolve(*solver));
+  PetscCall(TestOptionsEnd(&options));
+  PetscFunctionReturn(0);
+}
+
+/* A fold-free map of the mesh that is far from area-preserving. */
+static inline PetscErrorCode TestStart(EqmMesh mesh, const char *target, EqmSolver *solver)
+{
+  PetscFunctionBegin;
+  PetscCall(TestSolve(mesh, target, "-method lm -start tutte -max_it 0", solver));
+  CHECK((*solver)->totals.folds == 0, "a Tutte map folds %d times", (int)(*solver)->totals.folds);
+  PetscFunctionReturn(0);
+}
+
+/* Degrees of freedom at random, each entry in [-size, size], the same on any number of ranks. */
+static inline PetscErrorCode TestRandomStep(EqmDomain domain, PetscInt seed, PetscReal size, Vec step)
+{
+  PetscScalar *s;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(step, &s));
+  for (PetscInt v = 0; v < domain->mesh->num_owned; v++) {
+    for (PetscInt k = 0; k < domain->dof_count[v]; k++) {
+      s[domain->dof_start[v] - domain->dof_first + k] = size * TestRandom(seed, domain->mesh->vertex_input[v], k);
+    }
+  }
+  PetscCall(VecRestoreArrayWrite(step, &s));
+  PetscFunctionReturn(0);
+}
+
+static inline PetscReal TestSum(MPI_Comm comm, PetscReal local)
+{
+  PetscReal sum;
+
+  MPI_Allreduce(&local, &sum, 1, MPIU_REAL, MPIU_SUM, comm);
+  return sum;
+}
+
+static inline PetscReal TestMax(MPI_Comm comm, PetscReal local)
+{
+  PetscReal largest;
+
+  MPI_Allreduce(&local, &largest, 1, MPIU_REAL, MPIU_MAX, comm);
+  return largest;
+}
+
+#endif
