@@ -10,12 +10,16 @@ size_t EqmBase64Length(size_t num_bytes)
   return (num_bytes + 2) / 3 * 4;
 }
 
-static int ValueOf(char c)
+static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+enum { NOT_BASE64 = -1, WHITE_SPACE = -2 };
+
+/* What each character stands for. */
+static void MakeValues(signed char value[256])
 {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  return c == '+' ? 62 : c == '/' ? 63 : -1;
+  memset(value, NOT_BASE64, 256);
+  for (int i = 0; i < 64; ++i) value[(unsigned char)digits[i]] = (signed char)i;
+  value[' '] = value['\n'] = value['\r'] = value['\t'] = WHITE_SPACE;
 }
 
 /* EqmBase64Decode - decode until `max_bytes` bytes are there, the text ends or something else than base64 comes. Not
@@ -23,25 +27,27 @@ static int ValueOf(char c)
    data separately and put them side by side. Returns the number of bytes. */
 size_t EqmBase64Decode(const char *text, size_t length, char *bytes, size_t max_bytes)
 {
+  signed char values[256];
   size_t count = 0;
   uint32_t group = 0;
-  int digits = 0, padding = 0;
+  int length_of_group = 0, padding = 0;
 
+  MakeValues(values);
   for (size_t i = 0; i < length && count < max_bytes; ++i) {
-    int value = ValueOf(text[i]);
+    int value = values[(unsigned char)text[i]];
 
-    if (text[i] == ' ' || text[i] == '\n' || text[i] == '\r' || text[i] == '\t') continue;
-    if (text[i] == '=' && digits >= 2) {
+    if (value == WHITE_SPACE) continue;
+    if (text[i] == '=' && length_of_group >= 2) {
       value = 0;
       ++padding;
     } else if (value < 0 || padding) {
       break;
     }
     group = group << 6 | (uint32_t)value;
-    if (++digits < 4) continue;
+    if (++length_of_group < 4) continue;
     for (int k = 0; k < 3 - padding && count < max_bytes; ++k) bytes[count++] = (char)(group >> (16 - 8 * k));
     group = 0;
-    digits = padding = 0;
+    length_of_group = padding = 0;
   }
   return count;
 }
@@ -55,7 +61,6 @@ void EqmBase64Open(EqmBase64Writer *writer, EqmAtomicFile *file)
 
 static void Flush(EqmBase64Writer *writer)
 {
-  static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   const size_t count = writer->num_kept;
   char text[4 * 1024];
   size_t used = 0;
@@ -66,10 +71,10 @@ static void Flush(EqmBase64Writer *writer)
 
     if (left > 1) group |= (uint32_t)(unsigned char)writer->kept[i + 1] << 8;
     if (left > 2) group |= (uint32_t)(unsigned char)writer->kept[i + 2];
-    text[used++] = digit[group >> 18];
-    text[used++] = digit[group >> 12 & 63];
-    text[used++] = left > 1 ? digit[group >> 6 & 63] : '=';
-    text[used++] = left > 2 ? digit[group & 63] : '=';
+    text[used++] = digits[group >> 18];
+    text[used++] = digits[group >> 12 & 63];
+    text[used++] = left > 1 ? digits[group >> 6 & 63] : '=';
+    text[used++] = left > 2 ? digits[group & 63] : '=';
   }
   EqmAtomicWrite(writer->file, text, used);
   writer->num_kept = 0;

@@ -47,7 +47,8 @@ static PetscErrorCode CheckShape(EqmH5 h5, const char *path, PetscInt least, Pet
   PetscCall(EqmH5HasDataset(h5, path, &has));
   PetscCall(EqmH5Agree(h5, has, what));
   PetscCall(EqmH5GetShape(h5, path, total, width));
-  snprintf(what, sizeof(what), "%s is %lld x %lld", path, (long long)*total, (long long)*width);
+  snprintf(what, sizeof(what), "%s is %lld x %lld; it must have %d%s columns", path, (long long)*total,
+           (long long)*width, (int)least, most > least ? " or 4" : "");
   PetscCall(EqmH5Agree(h5, *width >= least && *width <= most ? PETSC_TRUE : PETSC_FALSE, what));
   snprintf(what, sizeof(what), "%s has %lld rows: too many for the file, or for indices", path, (long long)*total);
   if (H5Fget_filesize(h5->file, &file_bytes) < 0) file_bytes = 0;

@@ -84,7 +84,7 @@ static PetscErrorCode ParseFace(EqmInput *in, EqmBuilder *builder, Largest *larg
   const char *position = in->cursor;
   PetscInt64 corners[3] = {0, 0, 0}, num_corners = 0;
 
-  for (SkipContinuation(in); !EqmAtLineEnd(in); SkipContinuation(in)) {
+  for (SkipContinuation(in); !EqmAtLineEnd(in) && *in->cursor != '#'; SkipContinuation(in)) {
     PetscInt64 corner;
 
     EqmTry(ParseCorner(in, builder, &corner));

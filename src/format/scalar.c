@@ -20,10 +20,8 @@ static uint64_t LoadBits(const char *bytes, size_t size, PetscBool big_endian)
 {
   uint64_t bits = 0;
 
-  for (size_t k = 0; k < size; ++k) {
-    bits |= (uint64_t)(unsigned char)bytes[big_endian ? size - 1 - k : k] << (8 * k);
-  }
-  return bits;
+  memcpy(&bits, bytes, size); /* this machine is little endian: the low bytes come first */
+  return big_endian && size ? __builtin_bswap64(bits) >> (64 - 8 * size) : bits;
 }
 
 /* EqmLoadReal - the number at `bytes`, which need not be aligned. Not collective. */

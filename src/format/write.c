@@ -22,12 +22,14 @@ PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh,
 {
   const EqmFormat *format = EqmFormatOfSuffix(file);
   EqmAtomicFile out;
+  char reason[256] = "";
   PetscErrorCode code;
 
   if (!format || !format->write) return RejectSuffix(file, error, length);
   EqmTry(EqmAtomicOpen(file, &out, error, length));
-  code = format->write(&out, mesh, fields, num_fields, error, length);
+  code = format->write(&out, mesh, fields, num_fields, reason, sizeof(reason));
   if (!code) return EqmAtomicCommit(&out, error, length);
+  snprintf(error, length, "cannot write %s: %s", file, reason);
   EqmAtomicAbort(&out);
   return code;
 }

@@ -1,0 +1,112 @@
+/* Whatever the bytes of a file are, a parser returns: with a mesh that holds together or with an error that has a text.
+ */
+#include <equimap/soup.h>
+#include "format/format.h"
+#include "format_samples.h"
+
+#define MUTATIONS 600 /* of each sample and rank */
+
+static int failures;
+
+static uint64_t Random(uint64_t *state)
+{
+  *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  return *state >> 33;
+}
+
+static PetscBool HoldsTogether(const EqmSerialMesh *mesh)
+{
+  if (mesh->num_cells < 1 || mesh->num_vertices < 0 || (mesh->cell_size != 3 && mesh->cell_size != 4))
+    return PETSC_FALSE;
+  for (PetscInt i = 0; i < mesh->num_cells * mesh->cell_size; ++i) {
+    if (mesh->cells[i] < 0 || mesh->cells[i] >= mesh->num_vertices) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* Parse a copy that ends where its memory ends, so that a memory checker sees every step beyond. */
+static void Try(const Sample *s, const EqmFormat *format, const char *bytes, size_t length, const char *what,
+                long long which)
+{
+  EqmSerialMesh mesh = {0};
+  char error[256] = "", *copy = malloc(length ? length : 1);
+  PetscErrorCode code;
+
+  if (!copy) abort();
+  memcpy(copy, bytes, length);
+  (void)EqmFormatOfContent(copy, length);
+  code = format->parse(copy, length, &mesh, error, sizeof(error));
+  if (code ? (code != EQM_ERR_IO && code != EQM_ERR_MESH) || !error[0] || mesh.vertices : !HoldsTogether(&mesh)) {
+    fprintf(stderr, "%s, %s %lld: code %d, message \"%s\"\n", s->name, what, which, (int)code, error);
+    ++failures;
+  }
+  if (EqmSerialMeshReset(&mesh)) abort();
+  free(copy);
+}
+
+/* Change a few bytes: to anything, to a digit, by one bit; or put a large number, or take a piece away. */
+static size_t Mutate(char *bytes, size_t length, uint64_t *state)
+{
+  static const char *const numbers[] = {"99999999999999999999", "-1", "4294967295", "1e999", "0", "\377\377\377\377",
+                                        "\377\377\377\177"};
+  const int changes = 1 + (int)(Random(state) % 3);
+
+  for (int i = 0; i < changes && length > 1; ++i) {
+    const size_t at = Random(state) % length;
+    const char *number = numbers[Random(state) % 7];
+
+    switch (Random(state) % 5) {
+    case 0:
+      bytes[at] = (char)Random(state);
+      break;
+    case 1:
+      bytes[at] = (char)('0' + Random(state) % 10);
+      break;
+    case 2:
+      bytes[at] = (char)(bytes[at] ^ 1 << Random(state) % 8);
+      break;
+    case 3:
+      for (size_t k = 0; number[k] && at + k < length; ++k) bytes[at + k] = number[k];
+      break;
+    default:
+      memmove(bytes + at, bytes + at + 1, length - at - 1);
+      --length;
+    }
+  }
+  return length;
+}
+
+int main(int argc, char **argv)
+{
+  Sample *samples = malloc(MAX_SAMPLES * sizeof(*samples)), changed;
+  int count, rank, total = 0;
+  uint64_t state;
+
+  if (EqmInitialize(&argc, &argv)) return 1;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  count = MakeSamples(samples);
+  for (int i = 0; i < count; ++i) {
+    const Sample *s = &samples[i];
+    const EqmFormat *format = EqmFormatOfContent(s->bytes, s->length);
+
+    if (!format || !format->parse) {
+      fprintf(stderr, "%s is not recognised\n", s->name);
+      ++failures;
+      continue;
+    }
+    if (rank == 0) {
+      for (size_t length = 0; length <= s->length; ++length)
+        Try(s, format, s->bytes, length, "cut to", (long long)length);
+    }
+    state = (uint64_t)(1000 * i + rank);
+    for (int k = 0; k < MUTATIONS; ++k) {
+      changed = *s;
+      Try(s, format, changed.bytes, Mutate(changed.bytes, s->length, &state), "mutation", k);
+    }
+  }
+  if (MPI_Allreduce(&failures, &total, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD)) return 1;
+  if (rank == 0) printf("%d samples: %s, %d failures\n", count, total ? "FAILED" : "passed", total);
+  free(samples);
+  if (EqmFinalize()) return 1;
+  return total ? 1 : 0;
+}
