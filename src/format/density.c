@@ -54,9 +54,11 @@ static PetscErrorCode ParseLine(Column *column)
 /* The header is a line that does not end in a number; a file without one would lose its first value silently. */
 static PetscErrorCode SkipHeader(EqmInput *in)
 {
-  const char *line = in->cursor, *end = line;
+  const char *line, *end;
   PetscReal value;
 
+  EqmSkipMark(in);
+  line = end = in->cursor;
   while (end < in->end && *end != '\n' && *end != '\r') ++end;
   LastField(&line, &end);
   if (line < end && EqmParseReal(line, end, &value) == end) {

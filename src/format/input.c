@@ -64,6 +64,12 @@ PetscErrorCode EqmRejectAt(EqmInput *in, const char *position, PetscErrorCode co
   return code;
 }
 
+/* EqmSkipMark - move over the three bytes that some editors put before UTF-8 text. Not collective. */
+void EqmSkipMark(EqmInput *in)
+{
+  if (in->cursor == in->start && EqmRemaining(in) >= 3 && !memcmp(in->cursor, "\357\273\277", 3)) in->cursor += 3;
+}
+
 /* EqmSkipSpace - move over blanks, line ends and comments that begin with `comment` (0: there are none). Not
  * collective. */
 void EqmSkipSpace(EqmInput *in, char comment)

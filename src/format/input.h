@@ -32,6 +32,7 @@ PETSC_INTERN PetscErrorCode EqmRejectAt(EqmInput *in, const char *position, Pets
 PETSC_INTERN const char *EqmParseReal(const char *text, const char *end, PetscReal *value);
 PETSC_INTERN const char *EqmParseInteger(const char *text, const char *end, PetscInt64 *value);
 
+PETSC_INTERN void EqmSkipMark(EqmInput *in);
 PETSC_INTERN void EqmSkipSpace(EqmInput *in, char comment);
 PETSC_INTERN void EqmSkipLine(EqmInput *in);
 PETSC_INTERN PetscBool EqmReadReal(EqmInput *in, PetscReal *value);

@@ -28,6 +28,7 @@ PetscBool EqmRecogniseObj(const char *bytes, size_t length)
   size_t word_length;
 
   EqmInputOpen(&in, bytes, length, unused, sizeof(unused));
+  EqmSkipMark(&in);
   EqmSkipSpace(&in, '#');
   word_length = EqmReadWord(&in, &word);
   return word_length && !EqmAtLineEnd(&in) && IsKeyword(word, word_length) ? PETSC_TRUE : PETSC_FALSE;
@@ -119,6 +120,7 @@ static PetscErrorCode ParseStatements(EqmInput *in, EqmBuilder *builder)
   Largest largest = {-1, in->start};
   PetscBool foreign = PETSC_FALSE;
 
+  EqmSkipMark(in);
   while (in->cursor < in->end) {
     EqmTry(ParseStatement(in, builder, &largest, &foreign));
     EqmSkipLine(in);

@@ -32,12 +32,14 @@ PetscBool EqmRecogniseOff(const char *bytes, size_t length)
   char unused[8];
 
   EqmInputOpen(&in, bytes, length, unused, sizeof(unused));
+  EqmSkipMark(&in);
   EqmSkipSpace(&in, '#');
   return ReadMagic(&in);
 }
 
 static PetscErrorCode ParseHeader(EqmInput *in, PetscInt64 *num_vertices, PetscInt64 *num_faces)
 {
+  EqmSkipMark(in);
   EqmSkipSpace(in, '#');
   if (!ReadMagic(in)) return EqmReject(in, EQM_ERR_IO, "an OFF file begins with OFF, COFF or NOFF");
   if (EqmReadKeyword(in, "BINARY"))
