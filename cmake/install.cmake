@@ -22,6 +22,8 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/equimapConfigVersio
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/equimapConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/equimapConfigVersion.cmake
         DESTINATION ${EQUIMAP_PACKAGE_DIR})
 
+# The pkg-config file finds its prefix from where it lies, so that an installed tree can be moved.
+file(RELATIVE_PATH EQUIMAP_PC_TO_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 set(EQUIMAP_PC_REQUIRES "libxml-2.0, libcjson, zlib")
 if(CAIRO_FOUND)
   string(APPEND EQUIMAP_PC_REQUIRES ", cairo")

@@ -11,30 +11,34 @@ import sys
 import tempfile
 
 
-def look(path, vertices, cells):
-    """Runs inside pvpython."""
-    from paraview.simple import OpenDataFile, UpdatePipeline
-    from paraview import servermanager
+def check_grid(grid, vertices, cells):
+    assert grid.GetNumberOfPoints() == vertices, grid.GetNumberOfPoints()
+    assert grid.GetNumberOfCells() == cells, grid.GetNumberOfCells()
+    ratio = grid.GetCellData().GetArray("ratio")
+    assert ratio is not None and ratio.GetNumberOfTuples() == cells
+    assert grid.GetPointData().GetArray("vertex_ratio").GetNumberOfTuples() == vertices
+    low, high = ratio.GetRange()
+    assert 0.0 < low <= 1.0 <= high < 10.0, (low, high)
 
+
+def look(path, vertices, cells):
+    """Runs inside pvpython: each of ParaView's two generations of XDMF readers, and the one it takes by itself."""
+    from paraview import servermanager
+    from paraview.simple import OpenDataFile, UpdatePipeline, XDMFReader, Xdmf3ReaderT
+
+    for source in (XDMFReader(FileNames=[path]), Xdmf3ReaderT(FileName=[path])):
+        UpdatePipeline(proxy=source)
+        data = servermanager.Fetch(source)
+        assert data.GetClassName() == "vtkMultiBlockDataSet", data.GetClassName()
+        names = [data.GetMetaData(k).Get(data.NAME()) for k in range(data.GetNumberOfBlocks())]
+        assert names == ["mesh", "map"], names
+        for k in range(2):
+            check_grid(data.GetBlock(k), vertices, cells)
+        _, high = data.GetBlock(1).GetPoints().GetData().GetRange(-1)
+        assert 0.99 < high < 1.01, high  # the farthest point of the disk
     source = OpenDataFile(path)
-    assert source is not None, f"ParaView cannot open {path}"
     UpdatePipeline(proxy=source)
-    data = servermanager.Fetch(source)
-    assert data.GetClassName() == "vtkMultiBlockDataSet", data.GetClassName()
-    assert data.GetNumberOfBlocks() == 2, data.GetNumberOfBlocks()
-    names = [data.GetMetaData(k).Get(data.NAME()) for k in range(2)]
-    assert names == ["mesh", "map"], names
-    for k in range(2):
-        grid = data.GetBlock(k)
-        assert grid.GetNumberOfPoints() == vertices, grid.GetNumberOfPoints()
-        assert grid.GetNumberOfCells() == cells, grid.GetNumberOfCells()
-        ratio = grid.GetCellData().GetArray("ratio")
-        assert ratio is not None and ratio.GetNumberOfTuples() == cells
-        assert grid.GetPointData().GetArray("vertex_ratio").GetNumberOfTuples() == vertices
-        low, high = ratio.GetRange()
-        assert 0.0 < low <= 1.0 <= high < 10.0, (low, high)
-    low, high = data.GetBlock(1).GetPoints().GetData().GetRange(-1)
-    assert 0.99 < high < 1.01, high  # the farthest point of the disk
+    assert servermanager.Fetch(source).GetNumberOfPoints() == 2 * vertices
     print(f"pvpython: {vertices} points, {cells} cells, fields found in both grids")
 
 

@@ -33,7 +33,6 @@ class Equimap(CMakePackage):
     def cmake_args(self):
         return [
             self.define_from_variant("BUILD_SHARED_LIBS", "shared"),
-            self.define("CMAKE_DISABLE_FIND_PACKAGE_CAIRO", "~report" in self.spec),
             self.define("EQUIMAP_TESTS", self.run_tests),
             self.define("EQUIMAP_PERF", False),
         ]
