@@ -203,33 +203,40 @@ static PetscErrorCode AppendFindings(const EqmDiagnosis *diagnosis, const char *
   PetscFunctionReturn(0);
 }
 
-/* A mesh of the wrong kind for which no single finding says so. */
-static PetscErrorCode AppendMisfit(const EqmDiagnosis *diagnosis, const PetscBool takes[], PetscInt *count, char *text,
-                                   size_t length)
+/* Triangles where tetrahedra are wanted, or the other way round. */
+static PetscErrorCode AppendWrongCells(const EqmDiagnosis *diagnosis, const PetscBool takes[], PetscInt *count,
+                                       char *text, size_t length)
 {
   const PetscBool wants_solid = (PetscBool)(takes[EQM_SHAPE_BALL] && !takes[EQM_SHAPE_DISK]);
   const PetscBool wants_surface = (PetscBool)!takes[EQM_SHAPE_BALL];
+  const char *line = NULL;
 
   PetscFunctionBegin;
   if (diagnosis->cell_size == 3 && wants_solid) {
-    PetscCall(AppendLine("error: ",
-                         "the mesh is a surface of triangles, a solid of tetrahedra is wanted: fill it with a "
-                         "mesh generator such as TetGen or Gmsh, or map it with `sphere` or `disk`",
-                         text, length));
-    ++*count;
-  } else if (diagnosis->cell_size == 4 && wants_surface) {
-    PetscCall(AppendLine("error: ",
-                         "the mesh is a solid of tetrahedra, a surface of triangles is wanted: map it with "
-                         "`ball`, or extract its boundary",
-                         text, length));
-    ++*count;
-  } else if (!takes[diagnosis->topology] && !*count) {
-    PetscCall(AppendLine("error: ",
-                         diagnosis->num_faces ? "the mesh is neither a disk, a sphere nor a ball"
-                                              : "no usable cell is left: look at the file",
-                         text, length));
-    ++*count;
+    line = "the mesh is a surface of triangles, a solid of tetrahedra is wanted: fill it with a mesh generator such as "
+           "TetGen or Gmsh, or map it as a surface";
   }
+  if (diagnosis->cell_size == 4 && wants_surface) {
+    line = "the mesh is a solid of tetrahedra, a surface of triangles is wanted: map it with `ball`, or extract its "
+           "boundary";
+  }
+  if (!line) PetscFunctionReturn(0);
+  PetscCall(AppendLine("error: ", line, text, length));
+  ++*count;
+  PetscFunctionReturn(0);
+}
+
+/* A mesh that does not fit although no single finding says why. */
+static PetscErrorCode AppendMisfit(const EqmDiagnosis *diagnosis, const PetscBool takes[], PetscInt *count, char *text,
+                                   size_t length)
+{
+  PetscFunctionBegin;
+  if (takes[diagnosis->topology] || *count) PetscFunctionReturn(0);
+  PetscCall(AppendLine("error: ",
+                       diagnosis->num_faces ? "the mesh is neither a disk, a sphere nor a ball: look at it in a viewer"
+                                            : "no usable cell is left: look at the file",
+                       text, length));
+  ++*count;
   PetscFunctionReturn(0);
 }
 
@@ -262,6 +269,7 @@ PetscErrorCode EqmDiagnosisDescribe(const EqmDiagnosis *diagnosis, const char *t
   PetscFunctionBegin;
   PetscCall(TargetTakes(target, takes));
   text[0] = '\0';
+  PetscCall(AppendWrongCells(diagnosis, takes, &num_fatal, text, length));
   PetscCall(AppendFindings(diagnosis, target, takes, PETSC_TRUE, &num_fatal, text, length));
   PetscCall(AppendMisfit(diagnosis, takes, &num_fatal, text, length));
   *fatal = (PetscBool)(num_fatal > 0);

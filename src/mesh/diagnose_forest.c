@@ -58,6 +58,17 @@ static PetscReal TurnKey(PetscReal key, unsigned char turned)
   return turned ? 4.0 * label + 1.0 - key : key;
 }
 
+/* Take a key heard by an item, if it is lower than its set's; tells whether it is. */
+static PetscBool TakeKey(EqmForest *forest, PetscInt item, PetscReal heard, PetscReal *set_key)
+{
+  unsigned char turned;
+  const PetscInt root = Root(forest, item, &turned);
+
+  if (TurnKey(heard, turned) >= set_key[root]) return PETSC_FALSE;
+  set_key[root] = TurnKey(heard, turned);
+  return PETSC_TRUE;
+}
+
 static PetscErrorCode ExchangeKeys(MPI_Comm comm, PetscSF sf, EqmForest *forest, PetscReal *set_key, PetscBool *changed)
 {
   PetscReal *own, *heard[2];
@@ -76,19 +87,119 @@ static PetscErrorCode ExchangeKeys(MPI_Comm comm, PetscSF sf, EqmForest *forest,
   PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, own, heard[1], MPI_MIN));
   PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, own, heard[1], MPI_MIN));
   for (PetscInt i = 0; i < forest->num_items; i++) {
-    for (int way = 0; way < 2; way++) {
-      unsigned char turned;
-      PetscInt root;
-
-      if (heard[way][i] >= own[i]) continue;
-      root = Root(forest, i, &turned);
-      if (TurnKey(heard[way][i], turned) >= set_key[root]) continue;
-      set_key[root] = TurnKey(heard[way][i], turned);
-      here = PETSC_TRUE;
-    }
+    if (TakeKey(forest, i, heard[0][i], set_key)) here = PETSC_TRUE;
+    if (TakeKey(forest, i, heard[1][i], set_key)) here = PETSC_TRUE;
   }
   PetscCall(PetscFree3(own, heard[0], heard[1]));
   PetscCallMPI(MPI_Allreduce(&here, changed, 1, MPIU_BOOL, MPI_LOR, comm));
+  PetscFunctionReturn(0);
+}
+
+/* Where the key of an item can be asked for by the item's number. */
+typedef struct {
+  PetscLayout layout; /* of the numbers */
+  PetscSF entries;    /* roots: the numbers; leaves: the items, each on the one rank where it is no copy */
+  PetscReal *key;     /* per number of this rank's part of the layout */
+} Directory;
+
+static PetscErrorCode DirectoryCreate(MPI_Comm comm, PetscSF sf, PetscInt num_items, const PetscInt *number,
+                                      Directory *directory)
+{
+  PetscInt num_leaves, last = -1, num_entries = 0, *item, *entry;
+  const PetscInt *leaf;
+  PetscBool *is_copy;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSFGetGraph(sf, NULL, &num_leaves, &leaf, NULL));
+  PetscCall(PetscCalloc1(num_items, &is_copy));
+  for (PetscInt k = 0; k < num_leaves; k++) is_copy[leaf ? leaf[k] : k] = PETSC_TRUE;
+  PetscCall(PetscMalloc2(num_items, &item, num_items, &entry));
+  for (PetscInt i = 0; i < num_items; i++) {
+    last = PetscMax(last, number[i]);
+    if (is_copy[i]) continue;
+    item[num_entries] = i;
+    entry[num_entries++] = number[i];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &last, 1, MPIU_INT, MPI_MAX, comm));
+  PetscCall(PetscLayoutCreateFromSizes(comm, PETSC_DECIDE, last + 1, 1, &directory->layout));
+  PetscCall(PetscSFCreate(comm, &directory->entries));
+  PetscCall(PetscSFSetGraphLayout(directory->entries, directory->layout, num_entries, item, PETSC_COPY_VALUES, entry));
+  PetscCall(PetscCalloc1(directory->layout->n, &directory->key));
+  PetscCall(PetscFree2(item, entry));
+  PetscCall(PetscFree(is_copy));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DirectoryReset(Directory *directory)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLayoutDestroy(&directory->layout));
+  PetscCall(PetscSFDestroy(&directory->entries));
+  PetscCall(PetscFree(directory->key));
+  PetscFunctionReturn(0);
+}
+
+/* A set that was named after an item far away (`before`) tells that item what it has learnt since, and hears what the
+   item has learnt. Like that the names merge as a tree does, in a few rounds, where going from neighbour to neighbour
+   alone would take as many as the mesh is wide. */
+static PetscErrorCode ShareWithNamesakes(MPI_Comm comm, Directory *directory, EqmForest *forest, const PetscInt *number,
+                                         const PetscReal *before, PetscReal *set_key)
+{
+  const PetscInt n = forest->num_items;
+  PetscInt num_sets = 0, *root, *label;
+  PetscReal *key, *word;
+  PetscSF namesakes;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(n, &key, n, &word, n, &root, n, &label));
+  for (PetscInt i = 0; i < n; i++) {
+    unsigned char turned;
+    const PetscInt top = Root(forest, i, &turned);
+
+    key[i] = TurnKey(set_key[top], turned);
+    if (top != i || before[i] == 2.0 * (PetscReal)number[i]) continue;
+    root[num_sets] = i;
+    label[num_sets] = (PetscInt)PetscFloorReal(before[i] / 2.0);
+    word[num_sets] = TurnKey(set_key[i], before[i] > 2.0 * (PetscReal)label[num_sets]);
+    num_sets++;
+  }
+  PetscCall(PetscSFReduceBegin(directory->entries, MPIU_REAL, key, directory->key, MPI_REPLACE));
+  PetscCall(PetscSFReduceEnd(directory->entries, MPIU_REAL, key, directory->key, MPI_REPLACE));
+  PetscCall(PetscSFCreate(comm, &namesakes));
+  PetscCall(PetscSFSetGraphLayout(namesakes, directory->layout, num_sets, NULL, PETSC_OWN_POINTER, label));
+  PetscCall(PetscSFReduceBegin(namesakes, MPIU_REAL, word, directory->key, MPI_MIN));
+  PetscCall(PetscSFReduceEnd(namesakes, MPIU_REAL, word, directory->key, MPI_MIN));
+  PetscCall(PetscSFBcastBegin(namesakes, MPIU_REAL, directory->key, word, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(namesakes, MPIU_REAL, directory->key, word, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(directory->entries, MPIU_REAL, directory->key, key, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(directory->entries, MPIU_REAL, directory->key, key, MPI_REPLACE));
+  PetscCall(PetscSFDestroy(&namesakes));
+  for (PetscInt s = 0; s < num_sets; s++) {
+    (void)TakeKey(forest, root[s], TurnKey(word[s], before[root[s]] > 2.0 * (PetscReal)label[s]), set_key);
+  }
+  for (PetscInt i = 0; i < n; i++) (void)TakeKey(forest, i, key[i], set_key);
+  PetscCall(PetscFree4(key, word, root, label));
+  PetscFunctionReturn(0);
+}
+
+/* Let the sets' keys travel between the ranks until nothing changes. */
+static PetscErrorCode SettleKeys(MPI_Comm comm, PetscSF sf, EqmForest *forest, const PetscInt *number,
+                                 PetscReal *set_key)
+{
+  Directory directory;
+  PetscReal *before;
+  PetscBool changed = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  PetscCall(DirectoryCreate(comm, sf, forest->num_items, number, &directory));
+  PetscCall(PetscMalloc1(forest->num_items, &before));
+  while (changed) {
+    PetscCall(PetscArraycpy(before, set_key, forest->num_items));
+    PetscCall(ExchangeKeys(comm, sf, forest, set_key, &changed));
+    if (changed) PetscCall(ShareWithNamesakes(comm, &directory, forest, number, before, set_key));
+  }
+  PetscCall(PetscFree(before));
+  PetscCall(DirectoryReset(&directory));
   PetscFunctionReturn(0);
 }
 
@@ -101,7 +212,6 @@ PetscErrorCode EqmForestLabel(MPI_Comm comm, PetscSF sf, EqmForest *forest, cons
 {
   PetscReal *set_key, *key, *heard;
   PetscMPIInt size;
-  PetscBool changed;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
@@ -113,8 +223,7 @@ PetscErrorCode EqmForestLabel(MPI_Comm comm, PetscSF sf, EqmForest *forest, cons
 
     set_key[root] = PetscMin(set_key[root], 2.0 * (PetscReal)number[i] + against);
   }
-  changed = (PetscBool)(size > 1);
-  while (changed) PetscCall(ExchangeKeys(comm, sf, forest, set_key, &changed));
+  if (size > 1) PetscCall(SettleKeys(comm, sf, forest, number, set_key));
   for (PetscInt i = 0; i < forest->num_items; i++) {
     unsigned char against;
     const PetscInt root = Root(forest, i, &against);

@@ -282,6 +282,37 @@ static PetscErrorCode TestOrientation(void)
   PetscFunctionReturn(0);
 }
 
+/* Neighbours by far-away numbers, every third cell turned: pieces and orientation must travel through all ranks. */
+static PetscErrorCode TestShuffled(void)
+{
+  Draft plain = {0}, draft;
+  EqmDiagnosis d;
+  EqmRepair repair;
+
+  PetscFunctionBegin;
+  AddGrid(&plain, 12, 0.0);
+  draft = plain;
+  for (PetscInt v = 0; v < plain.num_vertices; v++) {
+    const PetscInt place = v * 50 % plain.num_vertices;
+
+    for (int k = 0; k < 3; k++) draft.vertices[3 * place + k] = plain.vertices[3 * v + k];
+  }
+  for (PetscInt c = 0; c < plain.num_cells; c++) {
+    const PetscInt place = c * 61 % plain.num_cells;
+
+    for (int k = 0; k < 3; k++) {
+      draft.cells[3 * place + k] = plain.cells[3 * c + (c % 3 ? k : 2 - k)] * 50 % plain.num_vertices;
+    }
+  }
+  PetscCall(Diagnose(&draft, &d));
+  CHECK(d.topology == EQM_SHAPE_DISK && d.num_components == 1 && d.num_boundary_loops == 1, "shuffled");
+  CHECK_FINDING(d, EQM_FINDING_NOT_ORIENTABLE, 0, -1, -1, -1);
+  PetscCall(Mend(&draft, &repair, &d));
+  CHECK(repair.cells_flipped == 96, "%d turned", (int)repair.cells_flipped);
+  ONLY(d, EQM_FINDING_OPEN);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode TestTopology(void)
 {
   Draft draft = {0};
@@ -474,6 +505,7 @@ int main(int argc, char **argv)
   PetscCall(TestVerticesAndCells());
   PetscCall(TestManifold());
   PetscCall(TestOrientation());
+  PetscCall(TestShuffled());
   PetscCall(TestTopology());
   PetscCall(TestSolids());
   PetscCall(TestCenters());
