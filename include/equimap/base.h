@@ -36,7 +36,8 @@ PETSC_EXTERN EqmStatus EqmStatusOfError(PetscErrorCode error);
 
 /* Fail on every rank of `comm` with one message (what is wrong, where, what to do), shown once, from rank 0.
    Collective in spirit: every rank must arrive here. Use like SETERRQ: it returns from the calling function. */
-#define EqmFail(comm, code, ...) return PetscError(comm, __LINE__, PETSC_FUNCTION_NAME, __FILE__, code, PETSC_ERROR_INITIAL, __VA_ARGS__)
+#define EqmFail(comm, code, ...)                                                                                       \
+  return PetscError(comm, __LINE__, PETSC_FUNCTION_NAME, __FILE__, code, PETSC_ERROR_INITIAL, __VA_ARGS__)
 
 /* Fail everywhere if one rank has failed: `code` (0 = fine) and `message` are taken from the lowest rank whose code is
    not 0. Collective on `comm`. */

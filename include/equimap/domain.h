@@ -1,9 +1,9 @@
 /* Where vertices may go: free in the plane, on the unit circle, along a side, fixed.
 
    Each vertex lives on a manifold of its own. Its degrees of freedom are coordinates in an orthonormal frame of the
-   tangent space at its present place; a step follows the geodesic of that velocity and carries the frame along by parallel
-   transport. So vectors of degrees of freedom keep their meaning from one iterate to the next: conjugate directions and
-   L-BFGS pairs need no transport of their own, and a method is written once for all domains. */
+   tangent space at its present place; a step follows the geodesic of that velocity and carries the frame along by
+   parallel transport. So vectors of degrees of freedom keep their meaning from one iterate to the next: conjugate
+   directions and L-BFGS pairs need no transport of their own, and a method is written once for all domains. */
 #ifndef EQUIMAP_DOMAIN_H
 #define EQUIMAP_DOMAIN_H
 
@@ -27,25 +27,25 @@ typedef struct _p_EqmDomain *EqmDomain;
 struct _p_EqmDomain {
   EqmMesh mesh;
   const char *name;
-  PetscInt dim;                 /* coordinates of a place: 2 or 3 */
-  unsigned char *kind;          /* EqmVertexKind per local vertex */
-  PetscInt *dof_start;          /* per local vertex: place of its first degree of freedom in the global vector */
-  unsigned char *dof_count;     /* per local vertex */
-  PetscInt num_dofs, dof_first; /* owned degrees of freedom, and the global number of the first */
+  PetscInt dim;                   /* coordinates of a place: 2 or 3 */
+  unsigned char *kind;            /* EqmVertexKind per local vertex */
+  PetscInt *dof_start;            /* per local vertex: place of its first degree of freedom in the global vector */
+  unsigned char *dof_count;       /* per local vertex */
+  PetscInt num_dofs, dof_first;   /* owned degrees of freedom, and the global number of the first */
   EqmVertexKind kind_of_boundary; /* where boundary vertices live: the circle, or the sides of the square */
-  PetscReal target_measure;     /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
-  PetscReal boundary_length;    /* of the target: 2 pi, 4 */
-  PetscReal corner_arc[4];      /* square: arc lengths of the corners */
+  PetscReal target_measure;       /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
+  PetscReal boundary_length;      /* of the target: 2 pi, 4 */
+  PetscReal corner_arc[4];        /* square: arc lengths of the corners */
   PetscErrorCode (*place_boundary)(EqmDomain, EqmPlace *);
-  PetscReal *arc_length;        /* per local vertex: arc length along the boundary loop in [0, 1), -1 inside (disk, square) */
+  PetscReal *arc_length; /* per local vertex: arc length along the boundary loop in [0, 1), -1 inside (disk, square) */
 };
 
 /* The unit disk: boundary vertices on the circle, the others free (000 (6), (7)). The mesh must be of disk type.
    Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateDisk(EqmMesh mesh, EqmDomain *domain);
-/* The unit square: four corners fixed, side vertices slide, the others free (002 section 4.1). `corners`: four input vertex
-   numbers on the boundary, in any rotation of the boundary's order, the first goes to (0,0); NULL: at quarters of the
-   boundary's arc length. Collective. */
+/* The unit square: four corners fixed, side vertices slide, the others free (002 section 4.1). `corners`: four input
+   vertex numbers on the boundary, in any rotation of the boundary's order, the first goes to (0,0); NULL: at quarters
+   of the boundary's arc length. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], EqmDomain *domain);
 PETSC_EXTERN PetscErrorCode EqmDomainDestroy(EqmDomain *domain);
 
@@ -56,11 +56,12 @@ PETSC_EXTERN PetscErrorCode EqmPlaceCopy(EqmDomain domain, const EqmPlace *from,
 PETSC_EXTERN PetscErrorCode EqmDomainCreateVec(EqmDomain domain, Vec *v);
 /* Put boundary vertices at their first places, by arc length; the others keep theirs. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainPlaceBoundary(EqmDomain domain, EqmPlace *place);
-/* Move along the geodesic of velocity `step` for time `t`: to = exp_from(t step). Ghosts of `to` are up to date. `from` and
-   `to` may be the same. Collective. */
+/* Move along the geodesic of velocity `step` for time `t`: to = exp_from(t step). Ghosts of `to` are up to date. `from`
+   and `to` may be the same. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainMove(EqmDomain domain, const EqmPlace *from, PetscReal t, Vec step, EqmPlace *to);
 /* From a gradient in ambient coordinates (dim per owned vertex) to degrees of freedom. Not collective. */
-PETSC_EXTERN PetscErrorCode EqmDomainProject(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient, Vec dofs);
+PETSC_EXTERN PetscErrorCode EqmDomainProject(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient,
+                                             Vec dofs);
 /* From degrees of freedom to ambient velocities of all local vertices, ghosts included. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainExpand(EqmDomain domain, const EqmPlace *place, Vec dofs, PetscReal *ambient);
 /* Second derivative of the geodesics with the given ambient velocities: zero but on curved parts. Not collective. */

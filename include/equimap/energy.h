@@ -1,7 +1,7 @@
 /* Energies of maps: loops over image simplices, the normalised authalic energy, Laplacians, the angle energy.
 
-   Notation of the house: w cell weight (sums to one over the mesh), a signed image measure, A = sum a, ratio r = (a/w)/A.
-   All loops are owner-computes over fixed blocks: the same bits for any number of threads. */
+   Notation of the house: w cell weight (sums to one over the mesh), a signed image measure, A = sum a, ratio r =
+   (a/w)/A. All loops are owner-computes over fixed blocks: the same bits for any number of threads. */
 #ifndef EQUIMAP_ENERGY_H
 #define EQUIMAP_ENERGY_H
 
@@ -27,16 +27,18 @@ PETSC_EXTERN PetscErrorCode EqmImageMeasure(EqmDomain domain, const EqmPlace *pl
 PETSC_EXTERN PetscErrorCode EqmImageSum(EqmMesh mesh, const PetscReal *a, EqmImageTotals *totals);
 /* gradient_i = sum over cells of slope_cell * d a_cell / d x_i, for owned vertices; `slope` per local cell, `gradient`
    dim per owned vertex. Not collective. */
-PETSC_EXTERN PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const PetscReal *slope, PetscReal *gradient);
-/* First and second derivative of a along the curve with the given ambient velocity and acceleration (NULL: zero), per local
-   cell. Either output may be NULL. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const PetscReal *slope,
+                                             PetscReal *gradient);
+/* First and second derivative of a along the curve with the given ambient velocity and acceleration (NULL: zero), per
+   local cell. Either output may be NULL. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmImageDerivatives(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity,
                                                 const PetscReal *acceleration, PetscReal *first, PetscReal *second);
 
-/* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), METHODS: free of cancellation) and, if wanted, its gradient
-   in degrees of freedom, from dE/da = 2 (r - 1) - E/A. `a` (per local cell) is scratch that returns the image measures.
-   Counts one evaluation. Collective. */
-PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy, Vec gradient);
+/* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), METHODS: free of cancellation) and, if wanted, its
+   gradient in degrees of freedom, from dE/da = 2 (r - 1) - E/A. `a` (per local cell) is scratch that returns the image
+   measures. Counts one evaluation. Collective. */
+PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy,
+                                              Vec gradient);
 
 /* Weights of a Laplacian: per local cell and corner, that of the edge opposite the corner. */
 typedef enum {
@@ -44,11 +46,13 @@ typedef enum {
   EQM_LAPLACIAN_COTANGENT, /* half the cotangents of the mesh: Dirichlet energy (000 L_S(id)) */
   EQM_LAPLACIAN_STRETCH    /* L_S of the present image (000 (2d)) */
 } EqmLaplacianKind;
-PETSC_EXTERN PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place, PetscReal *weights);
+PETSC_EXTERN PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place,
+                                                PetscReal *weights);
 /* y = L x for `width` components; x per local vertex, y per owned vertex. Not collective. */
-PETSC_EXTERN PetscErrorCode EqmLaplacianApply(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x, PetscReal *y);
+PETSC_EXTERN PetscErrorCode EqmLaplacianApply(EqmMesh mesh, const PetscReal *weights, PetscInt width,
+                                              const PetscReal *x, PetscReal *y);
 /* E_D = 1/2 sum x^T L x over all components. Collective. */
-PETSC_EXTERN PetscErrorCode EqmLaplacianEnergy(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x,
-                                               PetscReal *energy);
+PETSC_EXTERN PetscErrorCode EqmLaplacianEnergy(EqmMesh mesh, const PetscReal *weights, PetscInt width,
+                                               const PetscReal *x, PetscReal *energy);
 
 #endif

@@ -1,5 +1,5 @@
-/* The answer: where every input vertex goes, how good that is, how it was found. In input numbering, in the slabs of the
-   soup it belongs to. */
+/* The answer: where every input vertex goes, how good that is, how it was found. In input numbering, in the slabs of
+   the soup it belongs to. */
 #ifndef EQUIMAP_MAP_H
 #define EQUIMAP_MAP_H
 
@@ -24,8 +24,8 @@ typedef struct {
 /* One row per iteration. Row 0 is the start. */
 typedef struct {
   PetscInt iteration;
-  PetscReal energy;        /* E of the map (conformal: the Dirichlet energy) */
-  PetscReal sd;            /* standard deviation of the ratio */
+  PetscReal energy; /* E of the map (conformal: the Dirichlet energy) */
+  PetscReal sd;     /* standard deviation of the ratio */
   PetscInt64 folds;
   PetscReal step;          /* accepted step length, 0 in row 0 */
   PetscReal gradient_norm; /* of the function that the method minimises; -1 where the method has none */
@@ -35,10 +35,10 @@ typedef struct {
 
 typedef struct _p_EqmMap *EqmMap;
 struct _p_EqmMap {
-  EqmSoup soup;           /* the input mesh; referenced, not owned */
-  PetscInt dim;           /* coordinates per vertex: 2 or 3 */
-  PetscReal *coordinates; /* dim * slab of vertices */
-  PetscReal *cell_ratio;  /* r per cell of the slab */
+  EqmSoup soup;            /* the input mesh; referenced, not owned */
+  PetscInt dim;            /* coordinates per vertex: 2 or 3 */
+  PetscReal *coordinates;  /* dim * slab of vertices */
+  PetscReal *cell_ratio;   /* r per cell of the slab */
   PetscReal *vertex_ratio; /* mean of r over the cells around a vertex, weighted by w; per vertex of the slab */
   EqmDistortion distortion;
   PetscReal energy_initial, energy_final;

@@ -6,35 +6,35 @@
 #include <equimap/soup.h>
 
 /* Vertices are numbered 0 .. num_owned-1 (owned; reverse Cuthill-McKee within the rank), then num_owned .. num_local-1
-   (ghosts, by global number). Globally a rank's owned vertices are contiguous from vertex_start. Every cell that touches an
-   owned vertex is here: one ghost layer, so that an owned vertex's gradient needs no reverse exchange. */
+   (ghosts, by global number). Globally a rank's owned vertices are contiguous from vertex_start. Every cell that
+   touches an owned vertex is here: one ghost layer, so that an owned vertex's gradient needs no reverse exchange. */
 typedef struct _p_EqmMesh *EqmMesh;
 struct _p_EqmMesh {
   MPI_Comm comm;
   PetscMPIInt rank, size;
   EqmLedger ledger;
 
-  PetscInt cell_size;     /* 3 triangles, 4 tetrahedra */
+  PetscInt cell_size;               /* 3 triangles, 4 tetrahedra */
   PetscInt num_vertices, num_cells; /* global */
-  PetscInt vertex_start;  /* global number of the first owned vertex */
+  PetscInt vertex_start;            /* global number of the first owned vertex */
   PetscInt num_owned, num_local;
-  PetscInt *global;       /* global vertex number per local vertex */
-  PetscSF halo;           /* roots: owned vertices; leaves: ghosts */
+  PetscInt *global; /* global vertex number per local vertex */
+  PetscSF halo;     /* roots: owned vertices; leaves: ghosts */
 
   PetscInt num_local_cells; /* those that this rank owns come first */
   PetscInt num_owned_cells; /* a cell belongs to the owner of its vertex of smallest global number */
   PetscInt *cells;          /* cell_size * num_local_cells, local vertex numbers, orientation kept */
 
-  PetscReal *position;    /* 3 * num_local: the surface or solid itself */
-  PetscReal *weight;      /* per local cell: measure times density, sum over owned cells of all ranks = 1 */
-  PetscReal *shape;       /* per local cell: measure alone, in the mesh's own units */
-  PetscReal measure;      /* W: total measure, density included, in the mesh's own units */
+  PetscReal *position; /* 3 * num_local: the surface or solid itself */
+  PetscReal *weight;   /* per local cell: measure times density, sum over owned cells of all ranks = 1 */
+  PetscReal *shape;    /* per local cell: measure alone, in the mesh's own units */
+  PetscReal measure;   /* W: total measure, density included, in the mesh's own units */
 
   /* Boundary. Of surfaces: edges that run with the surface on their left; of solids: triangles that look outward. */
   PetscInt num_boundary_vertices; /* global */
   PetscBool *on_boundary;         /* per local vertex */
-  PetscInt num_boundary_facets;   /* local: every boundary edge (of tetrahedra: triangle) that touches an owned vertex */
-  PetscInt *boundary_facets;      /* (cell_size - 1) * num_boundary_facets, local vertex numbers, oriented as the boundary */
+  PetscInt num_boundary_facets; /* local: every boundary edge (of tetrahedra: triangle) that touches an owned vertex */
+  PetscInt *boundary_facets; /* (cell_size - 1) * num_boundary_facets, local vertex numbers, oriented as the boundary */
 
   /* Owner-computes blocks for threads: block b owns the vertices block_vertex[b] .. block_vertex[b+1]-1 and visits the
      cells block_cell[block_start[b]] .. in ascending order; the same for every number of threads. */
@@ -53,9 +53,9 @@ PETSC_EXTERN PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMes
 PETSC_EXTERN PetscErrorCode EqmMeshDestroy(EqmMesh *mesh);
 /* Fill the ghosts of an array with `width` reals per local vertex from their owners. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMeshUpdateGhosts(EqmMesh mesh, PetscInt width, PetscReal *array);
-/* Order the one boundary loop of a disk-type surface: for every local vertex on it, position in the loop (0 for the vertex
-   of the lowest input number, then along the boundary's direction) and arc length from there, in [0, 1); -1 elsewhere.
-   Arrays of num_local. Collective. */
+/* Order the one boundary loop of a disk-type surface: for every local vertex on it, position in the loop (0 for the
+   vertex of the lowest input number, then along the boundary's direction) and arc length from there, in [0, 1); -1
+   elsewhere. Arrays of num_local. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMeshBoundaryLoop(EqmMesh mesh, PetscInt *place, PetscReal *arc_length);
 /* From per-owned-vertex (per-owned-cell) values to slabs of the soup's numbering, `width` reals each. Slab entries of
    vertices that no cell uses keep their value. Collective. */

@@ -9,13 +9,13 @@ typedef struct _p_EqmSolver *EqmSolver;
 
 /* A solver for maps of `mesh` to `target`: "disk" or "square". Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *solver);
-/* Read the options -method, -start, -max_it, -energy_rtol, -energy_target, -gradient_tol, -wall_time, -balance, -quiet and
-   those of the method; with -help in the options database, print them. Errors: EQM_ERR_USAGE. Collective. */
+/* Read the options -method, -start, -max_it, -energy_rtol, -energy_target, -gradient_tol, -wall_time, -balance, -quiet
+   and those of the method; with -help in the options database, print them. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver);
 /* Minimise. Never fails for want of convergence: the map's status tells. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverSolve(EqmSolver solver);
-/* The present map in the numbering of `soup`, which must be the one that the mesh was made of and must outlive the map; with
-   distortion, history and work. Collective. */
+/* The present map in the numbering of `soup`, which must be the one that the mesh was made of and must outlive the map;
+   with distortion, history and work. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverGetMap(EqmSolver solver, EqmSoup soup, EqmMap *map);
 PETSC_EXTERN PetscErrorCode EqmSolverDestroy(EqmSolver *solver);
 /* Print (on rank 0) the options that EqmSolverSetFromOptions knows, without a mesh. Collective. */

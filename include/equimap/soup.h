@@ -31,7 +31,8 @@ struct _p_EqmSoup {
 
 /* Deal a mesh that rank 0 holds (NULL elsewhere) to all ranks; the arrays of `serial` are taken over and freed.
    Collective. */
-PETSC_EXTERN PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const char *file, EqmSoup *soup);
+PETSC_EXTERN PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const char *file,
+                                                  EqmSoup *soup);
 /* Wrap slabs that every rank already holds (a parallel reader's); arrays are taken over. Slabs are contiguous in rank
    order. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupCreateFromSlabs(MPI_Comm comm, PetscInt cell_size, PetscInt num_local_vertices,
@@ -61,24 +62,24 @@ PETSC_EXTERN PetscErrorCode EqmSoupRefine(EqmSoup *soup, PetscInt times);
 
 /* What the diagnosis found. `count` findings of a kind, the first few in input numbering. */
 typedef enum {
-  EQM_FINDING_NOT_FINITE,            /* vertices with a NaN or infinite coordinate */
-  EQM_FINDING_BAD_INDEX,             /* cells that name a vertex that does not exist */
-  EQM_FINDING_UNREFERENCED,          /* vertices of no cell */
-  EQM_FINDING_DUPLICATE_VERTEX,      /* vertices at the same place as another, both in use */
-  EQM_FINDING_DEGENERATE_CELL,       /* repeated vertex, or measure zero */
-  EQM_FINDING_DUPLICATE_CELL,        /* same vertices as another cell */
-  EQM_FINDING_NON_MANIFOLD_EDGE,     /* edge (triangle mesh) or face (tet mesh) of more than two cells */
-  EQM_FINDING_NON_MANIFOLD_VERTEX,   /* link is not one path or one circle */
+  EQM_FINDING_NOT_FINITE,               /* vertices with a NaN or infinite coordinate */
+  EQM_FINDING_BAD_INDEX,                /* cells that name a vertex that does not exist */
+  EQM_FINDING_UNREFERENCED,             /* vertices of no cell */
+  EQM_FINDING_DUPLICATE_VERTEX,         /* vertices at the same place as another, both in use */
+  EQM_FINDING_DEGENERATE_CELL,          /* repeated vertex, or measure zero */
+  EQM_FINDING_DUPLICATE_CELL,           /* same vertices as another cell */
+  EQM_FINDING_NON_MANIFOLD_EDGE,        /* edge (triangle mesh) or face (tet mesh) of more than two cells */
+  EQM_FINDING_NON_MANIFOLD_VERTEX,      /* link is not one path or one circle */
   EQM_FINDING_INCONSISTENT_ORIENTATION, /* edges that two cells run through in the same direction */
   EQM_FINDING_NOT_ORIENTABLE,
-  EQM_FINDING_COMPONENTS, /* more than one connected component */
-  EQM_FINDING_HOLES,      /* boundary loops beyond the one that a disk has */
-  EQM_FINDING_GENUS,      /* handles */
-  EQM_FINDING_CLOSED,     /* no boundary, where the command wants one */
-  EQM_FINDING_OPEN,       /* a boundary, where the command wants none */
-  EQM_FINDING_WRONG_CELLS, /* triangles where tetrahedra are wanted, or the other way round */
+  EQM_FINDING_COMPONENTS,         /* more than one connected component */
+  EQM_FINDING_HOLES,              /* boundary loops beyond the one that a disk has */
+  EQM_FINDING_GENUS,              /* handles */
+  EQM_FINDING_CLOSED,             /* no boundary, where the command wants one */
+  EQM_FINDING_OPEN,               /* a boundary, where the command wants none */
+  EQM_FINDING_WRONG_CELLS,        /* triangles where tetrahedra are wanted, or the other way round */
   EQM_FINDING_NO_INTERIOR_VERTEX, /* cells whose vertices all lie on the boundary */
-  EQM_FINDING_CHORD,      /* interior edges between two boundary vertices */
+  EQM_FINDING_CHORD,              /* interior edges between two boundary vertices */
   EQM_NUM_FINDINGS
 } EqmFindingKind;
 
@@ -97,21 +98,22 @@ typedef struct {
   PetscInt64 num_vertices, num_edges, num_faces, num_cells, num_boundary_vertices, num_boundary_edges;
   /* of a solid: the surfaces of its boundary in place of loops, and their genus; genus is -1 where it means nothing */
   PetscInt64 num_components, num_boundary_loops, euler_characteristic, genus;
-  PetscReal measure, smallest_cell, largest_cell;                             /* area or volume */
-  PetscReal worst_cell_quality;                                               /* 0 flat ... 1 equilateral */
+  PetscReal measure, smallest_cell, largest_cell; /* area or volume */
+  PetscReal worst_cell_quality;                   /* 0 flat ... 1 equilateral */
   EqmTopology topology;
 } EqmDiagnosis;
 
 /* Look at a mesh: everything that EqmDiagnosis holds. Never fails for what the mesh is like. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupDiagnose(EqmSoup soup, EqmDiagnosis *diagnosis);
-/* Say what is wrong with the mesh for a target ("disk", "square", "sphere", "ball", "conformal", or NULL: any): one line a
-   finding, with what, where, how many and what to do. `fatal` tells whether a map is out of the question, `text` is
-   written on every rank. Not collective. */
+/* Say what is wrong with the mesh for a target ("disk", "square", "sphere", "ball", "conformal", or NULL: any): one
+   line a finding, with what, where, how many and what to do. `fatal` tells whether a map is out of the question, `text`
+   is written on every rank. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmDiagnosisDescribe(const EqmDiagnosis *diagnosis, const char *target, PetscBool *fatal,
                                                  char *text, size_t length);
 /* What was mended. */
 typedef struct {
-  PetscInt64 duplicate_cells_removed, degenerate_cells_removed, cells_flipped, cells_split, vertices_added, vertices_unreferenced;
+  PetscInt64 duplicate_cells_removed, degenerate_cells_removed, cells_flipped, cells_split, vertices_added,
+      vertices_unreferenced;
 } EqmRepair;
 /* Mend what is safe to mend; the soup is replaced. Added vertices follow the input's, kept ones keep their numbers.
    `parent` (of the new slab of cells, input cell number of each cell) is allocated. Collective. */

@@ -1,7 +1,9 @@
 /* equimap COMMAND ARGUMENTS -options: find the command, hand over, turn its end into an exit code. */
 #include "app.h"
 #include <omp.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct {
   const char *name;
@@ -63,27 +65,50 @@ static void ParseCommandLine(int *argc, char **argv, EqmCommandLine *line, Petsc
 static PetscErrorCode PrintUsage(void)
 {
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equimap %s: area-, volume- and angle-preserving maps of triangle and tetrahedral meshes\n\n"
-                                          "usage: equimap COMMAND ARGUMENTS [-options]      (alone or under mpirun -n N)\n\n",
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                        "equimap %s: area-, volume- and angle-preserving maps of triangle and tetrahedral meshes\n\n"
+                        "usage: equimap COMMAND ARGUMENTS [-options]      (alone or under mpirun -n N)\n\n",
                         EqmVersion()));
   for (int k = 0; k < NUM_COMMANDS; k++) {
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage, commands[k].purpose));
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage,
+                          commands[k].purpose));
   }
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\nequimap COMMAND --help lists the options of a command. To begin with:\n"
-                                          "  equimap generate hills -n 20000 -o hills.obj\n"
-                                          "  equimap disk hills.obj -o hills.h5 && equimap report hills.h5 -o hills.png\n"));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                        "\nequimap COMMAND --help lists the options of a command. To begin with:\n"
+                        "  equimap generate hills -n 20000 -o hills.obj\n"
+                        "  equimap disk hills.obj -o hills.h5 && equimap report hills.h5 -o hills.png\n"));
+  PetscFunctionReturn(0);
+}
+
+/* Unless told otherwise: the cores that this rank may use, shared with the ranks of the same node where nothing binds
+   them to cores of their own. */
+static PetscErrorCode DefaultThreads(PetscInt *threads)
+{
+  MPI_Comm node;
+  PetscMPIInt ranks_on_node;
+  const PetscInt mine = omp_get_num_procs(), all = (PetscInt)sysconf(_SC_NPROCESSORS_ONLN);
+
+  PetscFunctionBegin;
+  *threads = omp_get_max_threads();
+  if (getenv("OMP_NUM_THREADS")) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Comm_split_type(PETSC_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node));
+  PetscCallMPI(MPI_Comm_size(node, &ranks_on_node));
+  PetscCallMPI(MPI_Comm_free(&node));
+  *threads = mine < all ? mine : PetscMax(1, all / ranks_on_node);
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode SetThreads(void)
 {
-  PetscInt threads = omp_get_max_threads();
+  PetscInt threads;
   PetscBool given;
 
   PetscFunctionBegin;
+  PetscCall(DefaultThreads(&threads));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-threads", &threads, &given));
-  if (given && threads < 1) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-threads %" PetscInt_FMT ": give 1 or more", threads);
-  if (given) omp_set_num_threads((int)threads);
+  if (given && threads < 1)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-threads %" PetscInt_FMT ": give 1 or more", threads);
+  omp_set_num_threads((int)threads);
   PetscFunctionReturn(0);
 }
 
@@ -99,13 +124,15 @@ static PetscErrorCode Run(const EqmCommandLine *line, EqmStatus *status)
   for (int k = 0; k < NUM_COMMANDS; k++) {
     if (strcmp(line->command, commands[k].name)) continue;
     if (line->help) {
-      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equimap %s %s\n  %s\n", commands[k].name, commands[k].usage, commands[k].purpose));
+      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equimap %s %s\n  %s\n", commands[k].name, commands[k].usage,
+                            commands[k].purpose));
       PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
     }
     PetscCall(commands[k].run(line, status));
     PetscFunctionReturn(0);
   }
-  EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "there is no command '%s'; equimap --help lists the commands", line->command);
+  EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "there is no command '%s'; equimap --help lists the commands",
+          line->command);
 }
 
 int main(int argc, char **argv)

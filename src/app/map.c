@@ -3,7 +3,8 @@
 #include <omp.h>
 
 typedef struct {
-  char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN], density[PETSC_MAX_PATH_LEN];
+  char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
+      density[PETSC_MAX_PATH_LEN];
   PetscBool has_output, has_summary, has_history, has_density, repair;
 } MapOptions;
 
@@ -13,14 +14,23 @@ static PetscErrorCode AskOptions(MapOptions *options)
 
   PetscFunctionBegin;
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
-  PetscCall(PetscOptionsString("-o", "where the map goes: .h5 (everything, with an .xmf for ParaView), .obj .off .ply .vtu .msh .gii; several with commas", NULL, "", options->output,
-                               sizeof(options->output), &options->has_output));
-  PetscCall(PetscOptionsString("-summary", "write the run's figures as JSON", NULL, "", options->summary, sizeof(options->summary), &options->has_summary));
-  PetscCall(PetscOptionsString("-history", "write a row per iteration as CSV", NULL, "", options->history, sizeof(options->history), &options->has_history));
-  PetscCall(PetscOptionsString("-density", "a positive weight per cell (CSV with a header, or /cell/density of an HDF5 file): keep mass instead of area", NULL, "", options->density,
-                               sizeof(options->density), &options->has_density));
-  PetscCall(PetscOptionsBool("-repair", "mend first what is safe to mend (see equimap check)", NULL, options->repair, &options->repair, NULL));
-  PetscCall(PetscOptionsInt("-threads", "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL, threads, &threads, NULL));
+  PetscCall(PetscOptionsString("-o",
+                               "where the map goes: .h5 (everything, with an .xmf for ParaView), .obj .off .ply .vtu "
+                               ".msh .gii; several with commas",
+                               NULL, "", options->output, sizeof(options->output), &options->has_output));
+  PetscCall(PetscOptionsString("-summary", "write the run's figures as JSON", NULL, "", options->summary,
+                               sizeof(options->summary), &options->has_summary));
+  PetscCall(PetscOptionsString("-history", "write a row per iteration as CSV", NULL, "", options->history,
+                               sizeof(options->history), &options->has_history));
+  PetscCall(PetscOptionsString(
+      "-density",
+      "a positive weight per cell (CSV with a header, or /cell/density of an HDF5 file): keep mass instead of area",
+      NULL, "", options->density, sizeof(options->density), &options->has_density));
+  PetscCall(PetscOptionsBool("-repair", "mend first what is safe to mend (see equimap check)", NULL, options->repair,
+                             &options->repair, NULL));
+  PetscCall(PetscOptionsInt("-threads",
+                            "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
+                            threads, &threads, NULL));
   PetscOptionsEnd();
   PetscFunctionReturn(0);
 }
@@ -30,7 +40,9 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOption
 {
   PetscFunctionBegin;
   if (line->num_arguments != 1) {
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "equimap %s wants one mesh file, got %d arguments; usage: equimap %s MESH -o OUT.h5", line->command, line->num_arguments, line->command);
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
+            "equimap %s wants one mesh file, got %d arguments; usage: equimap %s MESH -o OUT.h5", line->command,
+            line->num_arguments, line->command);
   }
   if (!options->has_output) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "no output named; add -o OUT.h5");
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
@@ -53,7 +65,9 @@ static PetscErrorCode ReadMesh(const EqmCommandLine *line, const MapOptions *opt
   PetscCall(EqmSoupDiagnose(*soup, &diagnosis));
   PetscCall(EqmDiagnosisDescribe(&diagnosis, line->command, &fatal, text, sizeof(text)));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));
-  if (fatal) EqmFail(PETSC_COMM_WORLD, EQM_ERR_MESH, "%s cannot be mapped to the %s:\n%s", line->argument[0], line->command, text);
+  if (fatal)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_MESH, "%s cannot be mapped to the %s:\n%s", line->argument[0], line->command,
+            text);
   PetscFunctionReturn(0);
 }
 
@@ -87,22 +101,36 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
   MPI_Comm comm = PETSC_COMM_WORLD;
 
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(comm, "\n%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells, %" PetscInt_FMT " ranks x %" PetscInt_FMT " threads\n", map->soup->file, map->soup->num_vertices,
-                        map->soup->num_cells, map->ranks, map->threads));
+  PetscCall(PetscPrintf(comm,
+                        "\n%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells, %" PetscInt_FMT
+                        " ranks x %" PetscInt_FMT " threads\n",
+                        map->soup->file, map->soup->num_vertices, map->soup->num_cells, map->ranks, map->threads));
   PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double)d->energy, (double)map->energy_initial));
-  PetscCall(PetscPrintf(comm, "  area ratio    sd %.3e   min %.4f   median %.6f   max %.4f\n", (double)d->ratio.sd, (double)d->ratio.min, (double)d->ratio.p50, (double)d->ratio.max));
-  PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean, (double)d->angle_error.p50));
+  PetscCall(PetscPrintf(comm, "  area ratio    sd %.3e   min %.4f   median %.6f   max %.4f\n", (double)d->ratio.sd,
+                        (double)d->ratio.min, (double)d->ratio.p50, (double)d->ratio.max));
+  PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean,
+                        (double)d->angle_error.p50));
   PetscCall(PetscPrintf(comm, "  folds         %" PetscInt64_FMT "\n", d->folds));
-  PetscCall(PetscPrintf(comm, "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves\n", map->work.evaluations,
-                        map->work.factorizations, map->work.coupled_factorizations, map->work.solves));
-  PetscCall(PetscPrintf(comm, "  seconds       %.2f: read %.2f, diagnose %.2f, distribute %.2f, start %.2f, minimise %.2f, measure %.2f, write %.2f\n", (double)map->total_seconds,
-                        (double)map->phase_seconds[EQM_PHASE_READ], (double)map->phase_seconds[EQM_PHASE_DIAGNOSE], (double)map->phase_seconds[EQM_PHASE_DISTRIBUTE],
-                        (double)map->phase_seconds[EQM_PHASE_START], (double)map->phase_seconds[EQM_PHASE_MINIMISE], (double)map->phase_seconds[EQM_PHASE_MEASURE],
+  PetscCall(PetscPrintf(comm,
+                        "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT
+                        " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves\n",
+                        map->work.evaluations, map->work.factorizations, map->work.coupled_factorizations,
+                        map->work.solves));
+  PetscCall(PetscPrintf(comm,
+                        "  seconds       %.2f: read %.2f, diagnose %.2f, distribute %.2f, start %.2f, minimise %.2f, "
+                        "measure %.2f, write %.2f\n",
+                        (double)map->total_seconds, (double)map->phase_seconds[EQM_PHASE_READ],
+                        (double)map->phase_seconds[EQM_PHASE_DIAGNOSE],
+                        (double)map->phase_seconds[EQM_PHASE_DISTRIBUTE], (double)map->phase_seconds[EQM_PHASE_START],
+                        (double)map->phase_seconds[EQM_PHASE_MINIMISE], (double)map->phase_seconds[EQM_PHASE_MEASURE],
                         (double)map->phase_seconds[EQM_PHASE_WRITE]));
-  PetscCall(PetscPrintf(comm, "  of these      METIS %.2f, assembly %.2f, factorisation %.2f, solves %.2f, kernels %.2f\n", (double)map->event_seconds[EQM_EVENT_PARTITION],
-                        (double)map->event_seconds[EQM_EVENT_ASSEMBLE], (double)map->event_seconds[EQM_EVENT_FACTOR], (double)map->event_seconds[EQM_EVENT_SOLVE],
+  PetscCall(PetscPrintf(comm,
+                        "  of these      METIS %.2f, assembly %.2f, factorisation %.2f, solves %.2f, kernels %.2f\n",
+                        (double)map->event_seconds[EQM_EVENT_PARTITION], (double)map->event_seconds[EQM_EVENT_ASSEMBLE],
+                        (double)map->event_seconds[EQM_EVENT_FACTOR], (double)map->event_seconds[EQM_EVENT_SOLVE],
                         (double)map->event_seconds[EQM_EVENT_KERNEL]));
-  PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)map->memory_total, options->output));
+  PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)map->memory_total,
+                        options->output));
   PetscFunctionReturn(0);
 }
 
@@ -122,7 +150,8 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
     PetscFunctionReturn(0);
   }
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
-  PetscCall(EqmSolverHelp(PETSC_COMM_WORLD, line->command)); /* asks for every option, so that the unknown ones stand out */
+  PetscCall(
+      EqmSolverHelp(PETSC_COMM_WORLD, line->command)); /* asks for every option, so that the unknown ones stand out */
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckArguments(line, &options));
   PetscCall(ReadMesh(line, &options, ledger, &soup));

@@ -4,20 +4,26 @@
 static PetscErrorCode PrintStatistics(const char *name, const EqmStatistics *s)
 {
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-14s mean %.6g  sd %.6g  min %.6g  25%% %.6g  median %.6g  75%% %.6g  95%% %.6g  max %.6g\n", name, (double)s->mean, (double)s->sd, (double)s->min, (double)s->p25,
-                        (double)s->p50, (double)s->p75, (double)s->p95, (double)s->max));
+  PetscCall(
+      PetscPrintf(PETSC_COMM_WORLD,
+                  "  %-14s mean %.6g  sd %.6g  min %.6g  25%% %.6g  median %.6g  75%% %.6g  95%% %.6g  max %.6g\n",
+                  name, (double)s->mean, (double)s->sd, (double)s->min, (double)s->p25, (double)s->p50, (double)s->p75,
+                  (double)s->p95, (double)s->max));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Print(const EqmDistortion *d, PetscBool surface)
 {
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  energy         %.10e   (image measure %.10g)\n  folds          %" PetscInt64_FMT "\n", (double)d->energy, (double)d->image_measure, d->folds));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                        "  energy         %.10e   (image measure %.10g)\n  folds          %" PetscInt64_FMT "\n",
+                        (double)d->energy, (double)d->image_measure, d->folds));
   PetscCall(PrintStatistics("ratio", &d->ratio));
   PetscCall(PrintStatistics("|ratio - 1|", &d->ratio_error));
   if (!surface) PetscFunctionReturn(0);
   PetscCall(PrintStatistics("angle error", &d->angle_error));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  quasi-conformal distortion: mean %.6g  max %.6g\n", (double)d->quasiconformal_mean, (double)d->quasiconformal_max));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  quasi-conformal distortion: mean %.6g  max %.6g\n",
+                        (double)d->quasiconformal_mean, (double)d->quasiconformal_max));
   PetscFunctionReturn(0);
 }
 
@@ -60,13 +66,16 @@ PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status)
 
   PetscFunctionBegin;
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
-  PetscCall(PetscOptionsString("-density", "a positive weight per cell: measure mass instead of area", NULL, "", density, sizeof(density), NULL));
+  PetscCall(PetscOptionsString("-density", "a positive weight per cell: measure mass instead of area", NULL, "",
+                               density, sizeof(density), NULL));
   PetscCall(PetscOptionsString("-summary", "write the figures as JSON", NULL, "", summary, sizeof(summary), NULL));
   PetscOptionsEnd();
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
   if (line->num_arguments != 2) {
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "equimap measure wants a mesh and a map, got %d arguments; usage: equimap measure MESH MAP", line->num_arguments);
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
+            "equimap measure wants a mesh and a map, got %d arguments; usage: equimap measure MESH MAP",
+            line->num_arguments);
   }
   PetscCall(Measure(line, density, summary, status));
   PetscFunctionReturn(0);

@@ -1,7 +1,7 @@
 #include "base/exchange.h"
 
-/* Send each of `num_records` records of `width` integers to its destination rank; `received` (PetscFree it) holds what came,
-   ordered by sender and, within a sender, as sent. Collective. */
+/* Send each of `num_records` records of `width` integers to its destination rank; `received` (PetscFree it) holds what
+   came, ordered by sender and, within a sender, as sent. Collective. */
 PetscErrorCode EqmExchange(MPI_Comm comm, PetscInt num_records, PetscInt width, const PetscMPIInt *destination,
                            const PetscInt *records, PetscInt *num_received, PetscInt **received)
 {
@@ -27,7 +27,8 @@ PetscErrorCode EqmExchange(MPI_Comm comm, PetscInt num_records, PetscInt width, 
   PetscCall(PetscMalloc1(width * *num_received, received));
   PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_INT, &record_type));
   PetscCallMPI(MPI_Type_commit(&record_type));
-  PetscCallMPI(MPI_Alltoallv(packed, send_count, send_start, record_type, *received, receive_count, receive_start, record_type, comm));
+  PetscCallMPI(MPI_Alltoallv(packed, send_count, send_start, record_type, *received, receive_count, receive_start,
+                             record_type, comm));
   PetscCallMPI(MPI_Type_free(&record_type));
   PetscCall(PetscFree(packed));
   PetscCall(PetscFree4(send_count, send_start, receive_count, receive_start));

@@ -4,7 +4,8 @@
 
 #include <petscsys.h>
 
-PETSC_INTERN PetscErrorCode EqmExchange(MPI_Comm comm, PetscInt num_records, PetscInt width, const PetscMPIInt *destination,
-                                        const PetscInt *records, PetscInt *num_received, PetscInt **received);
+PETSC_INTERN PetscErrorCode EqmExchange(MPI_Comm comm, PetscInt num_records, PetscInt width,
+                                        const PetscMPIInt *destination, const PetscInt *records, PetscInt *num_received,
+                                        PetscInt **received);
 
 #endif

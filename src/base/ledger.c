@@ -11,8 +11,10 @@ struct _p_EqmLedger {
   PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS];
 };
 
-static const char *const phase_names[EQM_NUM_PHASES] = {"Read", "Diagnose", "Distribute", "Start", "Minimise", "Measure", "Write"};
-static const char *const event_names[EQM_NUM_EVENTS] = {"EqmPartition", "EqmAssemble", "EqmFactor", "EqmSolve", "EqmKernel"};
+static const char *const phase_names[EQM_NUM_PHASES] = {"Read",     "Diagnose", "Distribute", "Start",
+                                                        "Minimise", "Measure",  "Write"};
+static const char *const event_names[EQM_NUM_EVENTS] = {"EqmPartition", "EqmAssemble", "EqmFactor", "EqmSolve",
+                                                        "EqmKernel"};
 
 /* Stages and events are PETSc's and outlive a ledger: find those that an earlier ledger registered. */
 static PetscErrorCode RegisterLogging(EqmLedger ledger)
@@ -116,8 +118,10 @@ PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PH
   PetscFunctionBegin;
   PetscCall(PetscTime(&now));
   mine = now - ledger->created;
-  if (phases) PetscCall(MPIU_Allreduce(ledger->phase_seconds, phases, EQM_NUM_PHASES, MPIU_REAL, MPIU_MAX, ledger->comm));
-  if (events) PetscCall(MPIU_Allreduce(ledger->event_seconds, events, EQM_NUM_EVENTS, MPIU_REAL, MPIU_MAX, ledger->comm));
+  if (phases)
+    PetscCall(MPIU_Allreduce(ledger->phase_seconds, phases, EQM_NUM_PHASES, MPIU_REAL, MPIU_MAX, ledger->comm));
+  if (events)
+    PetscCall(MPIU_Allreduce(ledger->event_seconds, events, EQM_NUM_EVENTS, MPIU_REAL, MPIU_MAX, ledger->comm));
   if (total) PetscCall(MPIU_Allreduce(&mine, total, 1, MPIU_REAL, MPIU_MAX, ledger->comm));
   PetscFunctionReturn(0);
 }

@@ -23,15 +23,24 @@ const char *EqmCommit(void)
 const char *EqmStatusName(EqmStatus status)
 {
   switch (status) {
-  case EQM_STATUS_CONVERGED: return "converged";
-  case EQM_STATUS_INTERNAL: return "internal error";
-  case EQM_STATUS_USAGE: return "wrong usage";
-  case EQM_STATUS_MESH: return "mesh cannot be mapped";
-  case EQM_STATUS_NOT_CONVERGED: return "not converged";
-  case EQM_STATUS_FOLDS: return "folds remain";
-  case EQM_STATUS_IO: return "input or output failed";
-  case EQM_STATUS_CHECKPOINT: return "checkpoint refused";
-  case EQM_STATUS_STOPPED: return "stopped on request";
+  case EQM_STATUS_CONVERGED:
+    return "converged";
+  case EQM_STATUS_INTERNAL:
+    return "internal error";
+  case EQM_STATUS_USAGE:
+    return "wrong usage";
+  case EQM_STATUS_MESH:
+    return "mesh cannot be mapped";
+  case EQM_STATUS_NOT_CONVERGED:
+    return "not converged";
+  case EQM_STATUS_FOLDS:
+    return "folds remain";
+  case EQM_STATUS_IO:
+    return "input or output failed";
+  case EQM_STATUS_CHECKPOINT:
+    return "checkpoint refused";
+  case EQM_STATUS_STOPPED:
+    return "stopped on request";
   }
   return "unknown";
 }

@@ -23,7 +23,8 @@ PetscErrorCode EqmDomainCreateDisk(EqmMesh mesh, EqmDomain *domain)
   (*domain)->target_measure = PETSC_PI;
   (*domain)->boundary_length = 2. * PETSC_PI;
   (*domain)->place_boundary = PlaceOnCircle;
-  for (PetscInt v = 0; v < mesh->num_local; v++) (*domain)->kind[v] = mesh->on_boundary[v] ? EQM_VERTEX_CIRCLE : EQM_VERTEX_FREE;
+  for (PetscInt v = 0; v < mesh->num_local; v++)
+    (*domain)->kind[v] = mesh->on_boundary[v] ? EQM_VERTEX_CIRCLE : EQM_VERTEX_FREE;
   PetscCall(EqmDomainNumber(*domain));
   PetscFunctionReturn(0);
 }

@@ -22,7 +22,8 @@ PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, Pet
     frame[0] = 0.;
     frame[1] = 1.;
     return 1;
-  case EQM_VERTEX_FIXED: break;
+  case EQM_VERTEX_FIXED:
+    break;
   }
   return 0;
 }
@@ -30,8 +31,11 @@ PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, Pet
 /* Number the degrees of freedom once `kind` is known: each rank's in the order of its vertices. Collective. */
 PetscErrorCode EqmDomainNumber(EqmDomain domain)
 {
-  static const unsigned char planar_count[] = {[EQM_VERTEX_FREE] = 2, [EQM_VERTEX_CIRCLE] = 1, [EQM_VERTEX_SIDE_X] = 1,
-                                               [EQM_VERTEX_SIDE_Y] = 1, [EQM_VERTEX_FIXED] = 0};
+  static const unsigned char planar_count[] = {[EQM_VERTEX_FREE] = 2,
+                                               [EQM_VERTEX_CIRCLE] = 1,
+                                               [EQM_VERTEX_SIDE_X] = 1,
+                                               [EQM_VERTEX_SIDE_Y] = 1,
+                                               [EQM_VERTEX_FIXED] = 0};
   const EqmMesh mesh = domain->mesh;
   PetscInt count = 0;
 
@@ -49,7 +53,8 @@ PetscErrorCode EqmDomainNumber(EqmDomain domain)
   PetscCallMPI(MPI_Exscan(&count, &domain->dof_first, 1, MPIU_INT, MPI_SUM, mesh->comm));
   if (mesh->rank == 0) domain->dof_first = 0;
   for (PetscInt v = 0; v < mesh->num_owned; v++) domain->dof_start[v] += domain->dof_first;
-  PetscCall(PetscSFBcastBegin(mesh->halo, MPIU_INT, domain->dof_start, domain->dof_start + mesh->num_owned, MPI_REPLACE));
+  PetscCall(
+      PetscSFBcastBegin(mesh->halo, MPIU_INT, domain->dof_start, domain->dof_start + mesh->num_owned, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(mesh->halo, MPIU_INT, domain->dof_start, domain->dof_start + mesh->num_owned, MPI_REPLACE));
   PetscFunctionReturn(0);
 }
@@ -130,7 +135,8 @@ PetscErrorCode EqmDomainMove(EqmDomain domain, const EqmPlace *from, PetscReal t
     if (domain->kind[v] == EQM_VERTEX_CIRCLE) {
       const PetscReal angle = t * move[0], c = PetscCosReal(angle), d = PetscSinReal(angle);
       const PetscReal turned[2] = {c * x[0] - d * x[1], d * x[0] + c * x[1]};
-      const PetscReal length = PetscSqrtReal(turned[0] * turned[0] + turned[1] * turned[1]); /* rounding must not add up */
+      const PetscReal length =
+          PetscSqrtReal(turned[0] * turned[0] + turned[1] * turned[1]); /* rounding must not add up */
       y[0] = turned[0] / length;
       y[1] = turned[1] / length;
     } else {
@@ -180,7 +186,8 @@ PetscErrorCode EqmDomainExpand(EqmDomain domain, const EqmPlace *place, Vec dofs
     const PetscInt count = EqmDomainFrame(domain, place, v, frame);
     for (PetscInt c = 0; c < domain->dim; c++) {
       PetscReal sum = 0.;
-      for (PetscInt k = 0; k < count; k++) sum += frame[domain->dim * k + c] * g[domain->dof_start[v] - domain->dof_first + k];
+      for (PetscInt k = 0; k < count; k++)
+        sum += frame[domain->dim * k + c] * g[domain->dof_start[v] - domain->dof_first + k];
       ambient[domain->dim * v + c] = sum;
     }
   }
@@ -189,14 +196,16 @@ PetscErrorCode EqmDomainExpand(EqmDomain domain, const EqmPlace *place, Vec dofs
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmDomainCurvature(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity, PetscReal *acceleration)
+PetscErrorCode EqmDomainCurvature(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity,
+                                  PetscReal *acceleration)
 {
   PetscFunctionBegin;
 #pragma omp parallel for schedule(static)
   for (PetscInt v = 0; v < domain->mesh->num_local; v++) {
     const PetscReal *const u = velocity + domain->dim * v;
     const PetscReal squared = domain->kind[v] == EQM_VERTEX_CIRCLE ? u[0] * u[0] + u[1] * u[1] : 0.;
-    for (PetscInt c = 0; c < domain->dim; c++) acceleration[domain->dim * v + c] = -squared * place->x[domain->dim * v + c];
+    for (PetscInt c = 0; c < domain->dim; c++)
+      acceleration[domain->dim * v + c] = -squared * place->x[domain->dim * v + c];
   }
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,8 @@
 
 #include <equimap/domain.h>
 
-PETSC_INTERN PetscErrorCode EqmDomainCreatePlanar(EqmMesh mesh, const char *name, EqmDomain *domain, PetscInt **loop_place);
+PETSC_INTERN PetscErrorCode EqmDomainCreatePlanar(EqmMesh mesh, const char *name, EqmDomain *domain,
+                                                  PetscInt **loop_place);
 PETSC_INTERN PetscErrorCode EqmDomainNumber(EqmDomain domain);
 PETSC_INTERN PetscReal EqmSquareAdvance(const PetscReal p[2], const PetscReal q[2]);
 

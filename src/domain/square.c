@@ -1,4 +1,5 @@
-/* The unit square: corners fixed at (0,0), (1,0), (1,1), (0,1), side vertices slide, the rest free (002 section 4.1). */
+/* The unit square: corners fixed at (0,0), (1,0), (1,1), (0,1), side vertices slide, the rest free (002 section 4.1).
+ */
 #include "domain/domain_private.h"
 
 static const PetscReal corner_place[4][2] = {{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}};
@@ -44,7 +45,8 @@ static PetscErrorCode PlaceOnSides(EqmDomain domain, EqmPlace *place)
 }
 
 /* Arc lengths of the user's corners; they must be boundary vertices in the boundary's order. */
-static PetscErrorCode CornersFromInput(EqmMesh mesh, const PetscInt corners[4], const PetscReal *arc, PetscReal corner_arc[4])
+static PetscErrorCode CornersFromInput(EqmMesh mesh, const PetscInt corners[4], const PetscReal *arc,
+                                       PetscReal corner_arc[4])
 {
   PetscReal found[4] = {-1., -1., -1., -1.};
 
@@ -57,7 +59,8 @@ static PetscErrorCode CornersFromInput(EqmMesh mesh, const PetscInt corners[4], 
   PetscCall(MPIU_Allreduce(found, corner_arc, 4, MPIU_REAL, MPIU_MAX, mesh->comm));
   for (PetscInt k = 0; k < 4; k++) {
     if (corner_arc[k] < 0.) {
-      EqmFail(mesh->comm, EQM_ERR_USAGE, "-corners: vertex %" PetscInt_FMT " is not on the boundary; name four boundary vertices (counted from 0)",
+      EqmFail(mesh->comm, EQM_ERR_USAGE,
+              "-corners: vertex %" PetscInt_FMT " is not on the boundary; name four boundary vertices (counted from 0)",
               corners[k]);
     }
   }
@@ -72,7 +75,8 @@ static PetscErrorCode CheckCornerOrder(EqmMesh mesh, const PetscReal corner_arc[
   for (PetscInt k = 0; k < 4; k++) turns += corner_arc[(k + 1) % 4] <= corner_arc[k];
   if (turns != 1) {
     EqmFail(mesh->comm, EQM_ERR_USAGE,
-            "-corners: the four vertices must be different and in the order in which the boundary runs round the surface (it lies "
+            "-corners: the four vertices must be different and in the order in which the boundary runs round the "
+            "surface (it lies "
             "on the left); try them in reverse");
   }
   PetscFunctionReturn(0);
@@ -95,7 +99,9 @@ static PetscErrorCode CornersAtQuarters(EqmMesh mesh, const PetscReal *arc, Pets
     if (best[0] > nearest) best[1] = PETSC_MAX_REAL;
     PetscCall(MPIU_Allreduce(&best[1], &corner_arc[k], 1, MPIU_REAL, MPIU_MIN, mesh->comm));
     if (k > 0 && corner_arc[k] <= corner_arc[k - 1]) {
-      EqmFail(mesh->comm, EQM_ERR_MESH, "the boundary has too few vertices for four corners at quarters of its length; name them with -corners i,j,k,l");
+      EqmFail(mesh->comm, EQM_ERR_MESH,
+              "the boundary has too few vertices for four corners at quarters of its length; name them with -corners "
+              "i,j,k,l");
     }
   }
   PetscFunctionReturn(0);
@@ -108,7 +114,8 @@ PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], Eq
 
   PetscFunctionBegin;
   if (mesh->num_boundary_vertices < 4) {
-    EqmFail(mesh->comm, EQM_ERR_MESH, "a map to the square needs at least four boundary vertices, this mesh has %" PetscInt_FMT,
+    EqmFail(mesh->comm, EQM_ERR_MESH,
+            "a map to the square needs at least four boundary vertices, this mesh has %" PetscInt_FMT,
             mesh->num_boundary_vertices);
   }
   PetscCall(EqmDomainCreatePlanar(mesh, "square", &domain, &loop_place));
@@ -117,8 +124,10 @@ PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], Eq
   domain->target_measure = 1.;
   domain->boundary_length = 4.;
   domain->place_boundary = PlaceOnSides;
-  if (corners) PetscCall(CornersFromInput(mesh, corners, domain->arc_length, domain->corner_arc));
-  else PetscCall(CornersAtQuarters(mesh, domain->arc_length, domain->corner_arc));
+  if (corners)
+    PetscCall(CornersFromInput(mesh, corners, domain->arc_length, domain->corner_arc));
+  else
+    PetscCall(CornersAtQuarters(mesh, domain->arc_length, domain->corner_arc));
   PetscCall(CheckCornerOrder(mesh, domain->corner_arc));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     PetscReal t;

@@ -34,7 +34,8 @@ static PetscErrorCode SumTotal(EqmMesh mesh, const PetscReal *a, PetscReal *tota
 #pragma omp parallel for schedule(static)
   for (PetscInt b = 0; b < EQM_NUM_RANGES; b++) {
     part[b] = 0.;
-    for (PetscInt c = EqmRangeStart(mesh->num_owned_cells, b); c < EqmRangeStart(mesh->num_owned_cells, b + 1); c++) part[b] += a[c];
+    for (PetscInt c = EqmRangeStart(mesh->num_owned_cells, b); c < EqmRangeStart(mesh->num_owned_cells, b + 1); c++)
+      part[b] += a[c];
   }
   for (PetscInt b = 0; b < EQM_NUM_RANGES; b++) sum += part[b];
   PetscCall(MPIU_Allreduce(&sum, total, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
@@ -83,7 +84,8 @@ PetscErrorCode EqmImageSum(EqmMesh mesh, const PetscReal *a, EqmImageTotals *tot
   PetscFunctionReturn(0);
 }
 
-/* One block: the block's vertices gather from every cell that touches them; each is written by one thread, in one order. */
+/* One block: the block's vertices gather from every cell that touches them; each is written by one thread, in one
+ * order. */
 static void GradientBlock(EqmMesh mesh, const PetscReal *x, const PetscReal *slope, PetscInt b, PetscReal *gradient)
 {
   const PetscInt first = mesh->block_vertex[b];
@@ -114,8 +116,8 @@ PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmImageDerivatives(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity, const PetscReal *acceleration,
-                                   PetscReal *first, PetscReal *second)
+PetscErrorCode EqmImageDerivatives(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity,
+                                   const PetscReal *acceleration, PetscReal *first, PetscReal *second)
 {
   const EqmMesh mesh = domain->mesh;
 

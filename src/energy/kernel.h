@@ -23,7 +23,9 @@ static inline PetscReal EqmVolume(const PetscReal *p, const PetscReal *q, const 
 {
   const PetscReal u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
   const PetscReal w[3] = {s[0] - p[0], s[1] - p[1], s[2] - p[2]};
-  return ((u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] + (u[0] * v[1] - u[1] * v[0]) * w[2]) / 6.;
+  return ((u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
+          (u[0] * v[1] - u[1] * v[0]) * w[2]) /
+         6.;
 }
 
 /* Gradient of the planar signed area: g[2 a + c] = d area / d (coordinate c of corner a). Constant along the opposite

@@ -25,9 +25,12 @@ PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, cons
     for (PetscInt a = 0; a < 3; a++) {
       const PetscReal dot = Dot(dim, x + dim * v[a], x + dim * v[(a + 1) % 3], x + dim * v[(a + 2) % 3]);
       /* cot = dot / (2 area); 000 (2d): cot |f(t)| / (2 |t|) = dot / (4 |t|), smooth through image area zero */
-      if (kind == EQM_LAPLACIAN_UNIFORM) weights[3 * c + a] = .5;
-      else if (kind == EQM_LAPLACIAN_COTANGENT) weights[3 * c + a] = .25 * dot / mesh->shape[c];
-      else weights[3 * c + a] = .25 * dot / mesh->weight[c];
+      if (kind == EQM_LAPLACIAN_UNIFORM)
+        weights[3 * c + a] = .5;
+      else if (kind == EQM_LAPLACIAN_COTANGENT)
+        weights[3 * c + a] = .25 * dot / mesh->shape[c];
+      else
+        weights[3 * c + a] = .25 * dot / mesh->weight[c];
     }
   }
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
@@ -35,7 +38,8 @@ PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, cons
 }
 
 /* One block of rows: y_i = sum of w_ij (x_i - x_j), differences first. */
-static void ApplyBlock(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x, PetscInt b, PetscReal *y)
+static void ApplyBlock(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x, PetscInt b,
+                       PetscReal *y)
 {
   const PetscInt first = mesh->block_vertex[b];
   const size_t length = (size_t)(mesh->block_vertex[b + 1] - first);
@@ -54,7 +58,8 @@ static void ApplyBlock(EqmMesh mesh, const PetscReal *weights, PetscInt width, c
   }
 }
 
-PetscErrorCode EqmLaplacianApply(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x, PetscReal *y)
+PetscErrorCode EqmLaplacianApply(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x,
+                                 PetscReal *y)
 {
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
@@ -80,7 +85,8 @@ static PetscReal EnergyRange(EqmMesh mesh, const PetscReal *weights, PetscInt wi
   return .5 * sum;
 }
 
-PetscErrorCode EqmLaplacianEnergy(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x, PetscReal *energy)
+PetscErrorCode EqmLaplacianEnergy(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x,
+                                  PetscReal *energy)
 {
   PetscReal part[EQM_NUM_RANGES], sum = 0.;
 

@@ -1,4 +1,5 @@
-/* Matrices from cell matrices: the pattern once, the values as often as needed, all through PETSc's coordinate format. */
+/* Matrices from cell matrices: the pattern once, the values as often as needed, all through PETSc's coordinate format.
+ */
 #include "linalg/linalg.h"
 
 struct _p_EqmAssembly {
@@ -18,7 +19,8 @@ static inline PetscBool Keeps(const EqmUnknowns *unknowns, EqmStorage storage, P
 }
 
 /* Global unknowns of a cell in the order of its matrix; returns how many. */
-static inline PetscInt CellUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, PetscInt cell, PetscInt list[EQM_MOST_CELL_UNKNOWNS])
+static inline PetscInt CellUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, PetscInt cell,
+                                    PetscInt list[EQM_MOST_CELL_UNKNOWNS])
 {
   PetscInt count = 0;
 
@@ -112,7 +114,8 @@ PetscErrorCode EqmAssemblyFill(EqmAssembly assembly, EqmCellMatrix cell_matrix, 
     cell_matrix(context, c, matrix);
     for (PetscInt i = 0; i < n; i++) {
       for (PetscInt j = 0; j < n; j++) {
-        if (Keeps(&assembly->unknowns, assembly->storage, list[i], list[j])) assembly->values[entry++] = matrix[n * i + j];
+        if (Keeps(&assembly->unknowns, assembly->storage, list[i], list[j]))
+          assembly->values[entry++] = matrix[n * i + j];
       }
     }
   }

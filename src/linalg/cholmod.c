@@ -29,9 +29,18 @@ static PetscErrorCode GetView(EqmLinear linear, Mat *matrix)
   PetscCall(MatGetRowIJ(*matrix, 0, PETSC_FALSE, PETSC_FALSE, &n, &start, &column, &done));
   PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no access to the rows of a matrix");
   PetscCall(MatSeqAIJGetArray(*matrix, &value));
-  c->view = (cholmod_sparse){.nrow = (size_t)n, .ncol = (size_t)n, .nzmax = (size_t)start[n], .p = (void *)start, .i = (void *)column,
-                             .x = value, .stype = 1, .itype = c->common.itype, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE,
-                             .sorted = 1, .packed = 1};
+  c->view = (cholmod_sparse){.nrow = (size_t)n,
+                             .ncol = (size_t)n,
+                             .nzmax = (size_t)start[n],
+                             .p = (void *)start,
+                             .i = (void *)column,
+                             .x = value,
+                             .stype = 1,
+                             .itype = c->common.itype,
+                             .xtype = CHOLMOD_REAL,
+                             .dtype = CHOLMOD_DOUBLE,
+                             .sorted = 1,
+                             .packed = 1};
   PetscFunctionReturn(0);
 }
 
@@ -64,7 +73,9 @@ static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
   c->factor = CHOLMOD(analyze_p)(&c->view, order, NULL, 0, &c->common);
   PetscCall(RestoreView(linear, matrix));
   PetscCall(PetscFree(order));
-  PetscCheck(c->factor, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD's analysis failed (status %d): too little memory for this mesh on one rank; use more", c->common.status);
+  PetscCheck(c->factor, PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "CHOLMOD's analysis failed (status %d): too little memory for this mesh on one rank; use more",
+             c->common.status);
   linear->factor_nonzeros = c->common.lnz;
   linear->factor_flops = c->common.fl;
   PetscFunctionReturn(0);
@@ -79,7 +90,9 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscCall(GetView(linear, &matrix));
   CHOLMOD(factorize)(&c->view, c->factor, &c->common);
   PetscCall(RestoreView(linear, matrix));
-  PetscCheck(c->common.status >= 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD's factorisation failed (status %d): too little memory for this mesh on one rank; use more", c->common.status);
+  PetscCheck(c->common.status >= 0, PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "CHOLMOD's factorisation failed (status %d): too little memory for this mesh on one rank; use more",
+             c->common.status);
   *success = (PetscBool)(c->common.status == CHOLMOD_OK && c->factor->minor == c->factor->n);
   PetscFunctionReturn(0);
 }
@@ -88,12 +101,17 @@ static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal 
 {
   Cholmod *const c = linear->data;
   const size_t n = (size_t)linear->num_unknowns;
-  cholmod_dense rhs = {.nrow = n, .ncol = (size_t)num_rhs, .nzmax = n * (size_t)num_rhs, .d = n, .x = (void *)b, .xtype = CHOLMOD_REAL,
+  cholmod_dense rhs = {.nrow = n,
+                       .ncol = (size_t)num_rhs,
+                       .nzmax = n * (size_t)num_rhs,
+                       .d = n,
+                       .x = (void *)b,
+                       .xtype = CHOLMOD_REAL,
                        .dtype = CHOLMOD_DOUBLE};
 
   PetscFunctionBegin;
-  PetscCheck(CHOLMOD(solve2)(CHOLMOD_A, c->factor, &rhs, NULL, &c->solution, NULL, &c->work_y, &c->work_e, &c->common), PETSC_COMM_SELF,
-             PETSC_ERR_LIB, "CHOLMOD's solve failed (status %d)", c->common.status);
+  PetscCheck(CHOLMOD(solve2)(CHOLMOD_A, c->factor, &rhs, NULL, &c->solution, NULL, &c->work_y, &c->work_e, &c->common),
+             PETSC_COMM_SELF, PETSC_ERR_LIB, "CHOLMOD's solve failed (status %d)", c->common.status);
   PetscCall(PetscArraycpy(x, (PetscReal *)c->solution->x, linear->num_unknowns * num_rhs));
   PetscFunctionReturn(0);
 }

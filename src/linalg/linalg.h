@@ -23,7 +23,8 @@ enum { EQM_MOST_CELL_UNKNOWNS = 12 };
 typedef enum { EQM_STORE_LOWER, EQM_STORE_FULL } EqmStorage;
 
 typedef struct _p_EqmAssembly *EqmAssembly;
-PETSC_INTERN PetscErrorCode EqmAssemblyCreate(EqmMesh mesh, const EqmUnknowns *unknowns, EqmStorage storage, EqmAssembly *assembly);
+PETSC_INTERN PetscErrorCode EqmAssemblyCreate(EqmMesh mesh, const EqmUnknowns *unknowns, EqmStorage storage,
+                                              EqmAssembly *assembly);
 PETSC_INTERN PetscErrorCode EqmAssemblyDestroy(EqmAssembly *assembly);
 PETSC_INTERN PetscErrorCode EqmAssemblyFill(EqmAssembly assembly, EqmCellMatrix cell_matrix, void *context);
 PETSC_INTERN PetscErrorCode EqmAssemblyGetMat(EqmAssembly assembly, Mat *matrix);
@@ -32,8 +33,10 @@ PETSC_INTERN PetscErrorCode EqmAssemblyGetMat(EqmAssembly assembly, Mat *matrix)
 typedef struct _p_EqmOrdering *EqmOrdering;
 PETSC_INTERN PetscErrorCode EqmOrderingCreate(EqmMesh mesh, EqmOrdering *ordering);
 PETSC_INTERN PetscErrorCode EqmOrderingDestroy(EqmOrdering *ordering);
-/* On rank 0 (NULL elsewhere): position of every unknown in the elimination, global numbering; PetscFree it. Collective. */
-PETSC_INTERN PetscErrorCode EqmOrderingOfUnknowns(EqmOrdering ordering, const EqmUnknowns *unknowns, PetscInt **position);
+/* On rank 0 (NULL elsewhere): position of every unknown in the elimination, global numbering; PetscFree it. Collective.
+ */
+PETSC_INTERN PetscErrorCode EqmOrderingOfUnknowns(EqmOrdering ordering, const EqmUnknowns *unknowns,
+                                                  PetscInt **position);
 
 /* ---- solvers */
 typedef enum { EQM_SOLVER_AUTO, EQM_SOLVER_CHOLMOD, EQM_SOLVER_MUMPS, EQM_SOLVER_MULTIGRID } EqmSolverKind;
@@ -56,11 +59,11 @@ struct _p_EqmLinear {
   PetscErrorCode (*destroy)(EqmLinear);
 };
 
-PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled,
-                                            EqmLinear *linear);
+PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
+                                            PetscBool coupled, EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearDestroy(EqmLinear *linear);
-PETSC_INTERN PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context, PetscReal diagonal_factor,
-                                            PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context,
+                                            PetscReal diagonal_factor, PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
 
 /* The kinds fill in the operations. */

@@ -14,13 +14,15 @@ static PetscErrorCode ChooseKind(EqmLinear linear)
   linear->kind = (EqmSolverKind)kind;
   if (linear->kind == EQM_SOLVER_AUTO) linear->kind = linear->mesh->size == 1 ? EQM_SOLVER_CHOLMOD : EQM_SOLVER_MUMPS;
   if (linear->kind == EQM_SOLVER_CHOLMOD && linear->mesh->size > 1) {
-    EqmFail(linear->mesh->comm, EQM_ERR_USAGE, "-linear_solver cholmod works on one rank only; on several take mumps or multigrid");
+    EqmFail(linear->mesh->comm, EQM_ERR_USAGE,
+            "-linear_solver cholmod works on one rank only; on several take mumps or multigrid");
   }
   PetscFunctionReturn(0);
 }
 
 /* A solver for matrices with the given unknowns (whose arrays must outlive it). Option: -linear_solver. Collective. */
-PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled, EqmLinear *out)
+PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled,
+                               EqmLinear *out)
 {
   EqmLinear linear;
   PetscInt *position = NULL;
@@ -34,12 +36,18 @@ PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnkn
   PetscCall(MPIU_Allreduce(&linear->num_owned, &linear->num_unknowns, 1, MPIU_INT, MPI_SUM, mesh->comm));
   PetscCall(ChooseKind(linear));
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_ASSEMBLE));
-  PetscCall(EqmAssemblyCreate(mesh, unknowns, linear->kind == EQM_SOLVER_MULTIGRID ? EQM_STORE_FULL : EQM_STORE_LOWER, &linear->assembly));
+  PetscCall(EqmAssemblyCreate(mesh, unknowns, linear->kind == EQM_SOLVER_MULTIGRID ? EQM_STORE_FULL : EQM_STORE_LOWER,
+                              &linear->assembly));
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_ASSEMBLE));
   switch (linear->kind) {
-  case EQM_SOLVER_CHOLMOD: PetscCall(EqmLinearSetUpCholmod(linear)); break;
-  case EQM_SOLVER_MUMPS: PetscCall(EqmLinearSetUpMumps(linear)); break;
-  default: PetscCall(EqmLinearSetUpMultigrid(linear));
+  case EQM_SOLVER_CHOLMOD:
+    PetscCall(EqmLinearSetUpCholmod(linear));
+    break;
+  case EQM_SOLVER_MUMPS:
+    PetscCall(EqmLinearSetUpMumps(linear));
+    break;
+  default:
+    PetscCall(EqmLinearSetUpMultigrid(linear));
   }
   if (linear->kind != EQM_SOLVER_MULTIGRID) PetscCall(EqmOrderingOfUnknowns(ordering, unknowns, &position));
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_FACTOR));
@@ -85,9 +93,10 @@ static PetscErrorCode ScaleDiagonal(Mat matrix, PetscReal factor)
   PetscFunctionReturn(0);
 }
 
-/* Assemble the cells' matrices, multiply the diagonal by `diagonal_factor` and factor. `success` is false on every rank if
-   the matrix is not numerically positive definite. Counts a factorisation. Collective. */
-PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context, PetscReal diagonal_factor, PetscBool *success)
+/* Assemble the cells' matrices, multiply the diagonal by `diagonal_factor` and factor. `success` is false on every rank
+   if the matrix is not numerically positive definite. Counts a factorisation. Collective. */
+PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context, PetscReal diagonal_factor,
+                               PetscBool *success)
 {
   EqmWork *work;
   Mat matrix;
@@ -105,8 +114,8 @@ PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void
   PetscFunctionReturn(0);
 }
 
-/* x = A^-1 b for several right-hand sides, stored one after the other, each of this rank's unknowns; x and b may be the same
-   array. A solution that is not finite is an error, never an answer. Collective. */
+/* x = A^-1 b for several right-hand sides, stored one after the other, each of this rank's unknowns; x and b may be the
+   same array. A solution that is not finite is an error, never an answer. Collective. */
 PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
 {
   EqmWork *work;

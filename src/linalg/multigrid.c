@@ -45,7 +45,8 @@ static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal 
     PetscCall(VecRestoreArrayWrite(g->b, &array));
     PetscCall(KSPSolve(g->ksp, g->b, g->x));
     PetscCall(KSPGetConvergedReason(g->ksp, &reason));
-    PetscCheck(reason > 0, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED, "multigrid did not converge: %s; try -linear_solver mumps", KSPConvergedReasons[reason]);
+    PetscCheck(reason > 0, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
+               "multigrid did not converge: %s; try -linear_solver mumps", KSPConvergedReasons[reason]);
     PetscCall(VecGetArray(g->x, &array));
     PetscCall(PetscArraycpy(x + k * linear->num_owned, array, linear->num_owned));
     PetscCall(VecRestoreArray(g->x, &array));

@@ -1,13 +1,13 @@
-/* MUMPS on any number of ranks, called directly: PETSc's interface cannot hand it an ordering, and Debian's MUMPS has none
-   of METIS's, whose nested dissection halves the fill. */
+/* MUMPS on any number of ranks, called directly: PETSc's interface cannot hand it an ordering, and Debian's MUMPS has
+   none of METIS's, whose nested dissection halves the fill. */
 #include "linalg/linalg.h"
 #include <dmumps_c.h>
 
 /* The manual counts from 1. */
-#define ICNTL(k) icntl[(k)-1]
-#define INFOG(k) infog[(k)-1]
+#define ICNTL(k)  icntl[(k)-1]
+#define INFOG(k)  infog[(k)-1]
 #define RINFOG(k) rinfog[(k)-1]
-#define INFO(k) info[(k)-1]
+#define INFO(k)   info[(k)-1]
 
 enum { JOB_START = -1, JOB_END = -2, JOB_ANALYSE = 1, JOB_FACTOR = 2, JOB_SOLVE = 3, MOST_RETRIES = 4 };
 
@@ -70,7 +70,8 @@ static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
   PetscCall(MatGetInfo(matrix, MAT_LOCAL, &info));
   m->id.n = (MUMPS_INT)linear->num_unknowns;
   m->id.nnz_loc = (MUMPS_INT8)info.nz_used;
-  PetscCall(PetscMalloc3((size_t)m->id.nnz_loc, &m->row, (size_t)m->id.nnz_loc, &m->column, (size_t)m->id.nnz_loc, &m->id.a_loc));
+  PetscCall(PetscMalloc3((size_t)m->id.nnz_loc, &m->row, (size_t)m->id.nnz_loc, &m->column, (size_t)m->id.nnz_loc,
+                         &m->id.a_loc));
   m->id.irn_loc = m->row;
   m->id.jcn_loc = m->column;
   PetscCall(TakeMatrix(linear, PETSC_TRUE));
@@ -82,8 +83,10 @@ static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
   PetscCall(Call(linear, JOB_ANALYSE));
   PetscCall(PetscFree(pivot));
   m->id.perm_in = NULL;
-  PetscCheck(m->id.INFOG(1) >= 0, linear->mesh->comm, PETSC_ERR_LIB, "MUMPS' analysis failed: INFOG(1) = %d, INFOG(2) = %d", m->id.INFOG(1), m->id.INFOG(2));
-  PetscCheck(m->id.INFOG(7) == 1, linear->mesh->comm, PETSC_ERR_LIB, "MUMPS ignored the ordering it was given (INFOG(7) = %d)", m->id.INFOG(7));
+  PetscCheck(m->id.INFOG(1) >= 0, linear->mesh->comm, PETSC_ERR_LIB,
+             "MUMPS' analysis failed: INFOG(1) = %d, INFOG(2) = %d", m->id.INFOG(1), m->id.INFOG(2));
+  PetscCheck(m->id.INFOG(7) == 1, linear->mesh->comm, PETSC_ERR_LIB,
+             "MUMPS ignored the ordering it was given (INFOG(7) = %d)", m->id.INFOG(7));
   linear->factor_nonzeros = m->id.INFOG(3) < 0 ? -1e6 * m->id.INFOG(3) : m->id.INFOG(3);
   linear->factor_flops = m->id.RINFOG(1);
 
@@ -125,7 +128,8 @@ static PetscErrorCode Reserve(EqmLinear linear, PetscInt num_rhs)
   PetscCall(PetscFree3(m->rhs, m->solution, m->solution_row));
   m->num_rhs = PetscMax(num_rhs, m->num_rhs);
   m->num_solution = m->id.INFO(23);
-  PetscCall(PetscMalloc3(m->num_rhs * linear->num_owned + 1, &m->rhs, m->num_rhs * m->num_solution + 1, &m->solution, m->num_solution + 1, &m->solution_row));
+  PetscCall(PetscMalloc3(m->num_rhs * linear->num_owned + 1, &m->rhs, m->num_rhs * m->num_solution + 1, &m->solution,
+                         m->num_solution + 1, &m->solution_row));
   PetscFunctionReturn(0);
 }
 
@@ -142,7 +146,8 @@ static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal 
   m->id.sol_loc = m->solution;
   m->id.isol_loc = m->solution_row;
   PetscCall(Call(linear, JOB_SOLVE));
-  PetscCheck(m->id.INFOG(1) >= 0, linear->mesh->comm, PETSC_ERR_LIB, "MUMPS' solve failed: INFOG(1) = %d, INFOG(2) = %d", m->id.INFOG(1), m->id.INFOG(2));
+  PetscCheck(m->id.INFOG(1) >= 0, linear->mesh->comm, PETSC_ERR_LIB,
+             "MUMPS' solve failed: INFOG(1) = %d, INFOG(2) = %d", m->id.INFOG(1), m->id.INFOG(2));
   if (!m->to_owner) {
     const PetscInt count = m->id.INFO(23);
     PetscInt *root;
@@ -196,7 +201,7 @@ PetscErrorCode EqmLinearSetUpMumps(EqmLinear linear)
   PetscCall(Call(linear, JOB_START));
   for (int unit = 1; unit <= 3; unit++) m->id.ICNTL(unit) = -1; /* silent: failures are ours to tell */
   m->id.ICNTL(4) = 0;
-  m->id.ICNTL(7) = 1;   /* order: ours */
+  m->id.ICNTL(7) = 1; /* order: ours */
   m->id.ICNTL(13) = 0;
   m->id.ICNTL(14) = 30; /* spare workspace, per cent */
   m->id.ICNTL(18) = 3;  /* entries where they are */

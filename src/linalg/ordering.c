@@ -1,5 +1,5 @@
-/* Nested dissection of the vertex graph. Ordering vertices, not unknowns, is four times cheaper, serves the scalar and the
-   coupled matrices alike, and keeps the unknowns of a vertex together. */
+/* Nested dissection of the vertex graph. Ordering vertices, not unknowns, is four times cheaper, serves the scalar and
+   the coupled matrices alike, and keeps the unknowns of a vertex together. */
 #include "linalg/linalg.h"
 #include "mesh/build.h"
 #include <metis.h>
@@ -51,7 +51,9 @@ static PetscErrorCode Dissect(PetscInt n, PetscInt *degree_then_start, PetscInt 
   }
   degree_then_start[n] = sum;
   PetscCall(PetscMalloc1(n, &inverse));
-  result = n ? METIS_NodeND(&num_rows, (idx_t *)degree_then_start, (idx_t *)neighbor, NULL, NULL, (idx_t *)order, (idx_t *)inverse) : METIS_OK;
+  result = n ? METIS_NodeND(&num_rows, (idx_t *)degree_then_start, (idx_t *)neighbor, NULL, NULL, (idx_t *)order,
+                            (idx_t *)inverse)
+             : METIS_OK;
   PetscCheck(result == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_NodeND failed with code %d", result);
   PetscCall(PetscFree(inverse));
   PetscFunctionReturn(0);

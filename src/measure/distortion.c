@@ -13,19 +13,22 @@ static void Angles(PetscInt dim, const PetscReal *p[3], PetscReal angle[3])
       v[k] = p[(a + 2) % 3][k] - p[a][k];
     }
     const PetscReal x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-    angle[a] = PetscAtan2Real(PetscSqrtReal(x * x + y * y + z * z), u[0] * v[0] + u[1] * v[1] + u[2] * v[2]) * 180. / PETSC_PI;
+    angle[a] =
+        PetscAtan2Real(PetscSqrtReal(x * x + y * y + z * z), u[0] * v[0] + u[1] * v[1] + u[2] * v[2]) * 180. / PETSC_PI;
   }
 }
 
 /* Ratio of the singular values of the affine map between two triangles, >= 1, from edge lengths and areas: with
    S = sum of cot(mesh angle) * (image edge)^2 / (2 area of the mesh) = s1^2 + s2^2 and P = s1 s2. */
-static PetscReal QuasiConformal(PetscInt dim, const PetscReal *p[3], const PetscReal *q[3], PetscReal area_p, PetscReal area_q)
+static PetscReal QuasiConformal(PetscInt dim, const PetscReal *p[3], const PetscReal *q[3], PetscReal area_p,
+                                PetscReal area_q)
 {
   PetscReal energy = 0.;
 
   for (PetscInt a = 0; a < 3; a++) {
     PetscReal dot = 0., squared = 0.;
-    const PetscReal *const p1 = p[(a + 1) % 3], *const p2 = p[(a + 2) % 3], *const q1 = q[(a + 1) % 3], *const q2 = q[(a + 2) % 3];
+    const PetscReal *const p1 = p[(a + 1) % 3], *const p2 = p[(a + 2) % 3], *const q1 = q[(a + 1) % 3],
+                           *const q2 = q[(a + 2) % 3];
     for (PetscInt k = 0; k < 3; k++) dot += (p1[k] - p[a][k]) * (p2[k] - p[a][k]);
     for (PetscInt k = 0; k < dim; k++) squared += PetscSqr(q1[k] - q2[k]);
     energy += dot * squared;

@@ -6,7 +6,8 @@
 enum { NUM_QUANTILES = 4 };
 static const PetscReal quantile_levels[NUM_QUANTILES] = {.25, .5, .75, .95};
 
-/* Doubles and 64-bit integers in the same order, so that a value can be found by bisection in 64 rounds whatever its size. */
+/* Doubles and 64-bit integers in the same order, so that a value can be found by bisection in 64 rounds whatever its
+ * size. */
 static PetscInt64 KeyOfReal(double x)
 {
   PetscInt64 bits;
@@ -29,14 +30,17 @@ static PetscInt CountUpTo(PetscInt n, const PetscReal *sorted, PetscReal x)
 
   while (low < high) {
     const PetscInt middle = low + (high - low) / 2;
-    if (sorted[middle] <= x) low = middle + 1;
-    else high = middle;
+    if (sorted[middle] <= x)
+      low = middle + 1;
+    else
+      high = middle;
   }
   return low;
 }
 
 /* The order statistics of the given ranks (from 0) of the union of all ranks' sorted arrays. */
-static PetscErrorCode OrderStatistics(MPI_Comm comm, PetscInt n, const PetscReal *sorted, PetscInt count, const PetscInt64 *rank, PetscReal *value)
+static PetscErrorCode OrderStatistics(MPI_Comm comm, PetscInt n, const PetscReal *sorted, PetscInt count,
+                                      const PetscInt64 *rank, PetscReal *value)
 {
   PetscInt64 low[2 * NUM_QUANTILES], high[2 * NUM_QUANTILES], below[2 * NUM_QUANTILES];
 
@@ -46,21 +50,26 @@ static PetscErrorCode OrderStatistics(MPI_Comm comm, PetscInt n, const PetscReal
     high[k] = KeyOfReal(PETSC_MAX_REAL);
   }
   for (PetscInt round = 0; round < 65; round++) { /* the smallest key that has more than `rank` entries up to it */
-    for (PetscInt k = 0; k < count; k++) below[k] = CountUpTo(n, sorted, RealOfKey(low[k] + (PetscInt64)(((unsigned long long)high[k] - (unsigned long long)low[k]) / 2)));
+    for (PetscInt k = 0; k < count; k++)
+      below[k] =
+          CountUpTo(n, sorted,
+                    RealOfKey(low[k] + (PetscInt64)(((unsigned long long)high[k] - (unsigned long long)low[k]) / 2)));
     PetscCall(MPIU_Allreduce(MPI_IN_PLACE, below, (PetscMPIInt)count, MPIU_INT64, MPI_SUM, comm));
     for (PetscInt k = 0; k < count; k++) {
       const PetscInt64 middle = low[k] + (PetscInt64)(((unsigned long long)high[k] - (unsigned long long)low[k]) / 2);
       if (low[k] >= high[k]) continue;
-      if (below[k] > rank[k]) high[k] = middle;
-      else low[k] = middle + 1;
+      if (below[k] > rank[k])
+        high[k] = middle;
+      else
+        low[k] = middle + 1;
     }
   }
   for (PetscInt k = 0; k < count; k++) value[k] = RealOfKey(low[k]);
   PetscFunctionReturn(0);
 }
 
-/* Statistics of the union of all ranks' samples; the sample is sorted in place. Quantiles interpolate linearly between the
-   neighbouring order statistics. An empty union gives zeros. Collective. */
+/* Statistics of the union of all ranks' samples; the sample is sorted in place. Quantiles interpolate linearly between
+   the neighbouring order statistics. An empty union gives zeros. Collective. */
 PetscErrorCode EqmStatisticsOf(MPI_Comm comm, PetscInt n, PetscReal *sample, EqmStatistics *statistics)
 {
   PetscInt64 total = n, rank[2 * NUM_QUANTILES];

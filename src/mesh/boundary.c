@@ -23,8 +23,8 @@ static PetscBool FacetKey(EqmMesh mesh, PetscInt cell, PetscInt opposite, PetscI
   return (PetscBool)(key[0] < mesh->num_owned);
 }
 
-/* Facets, as (cell, corner), grouped by their smallest vertex. Facets of ghosts alone are left out: their other cell may be
-   elsewhere. */
+/* Facets, as (cell, corner), grouped by their smallest vertex. Facets of ghosts alone are left out: their other cell
+   may be elsewhere. */
 static PetscErrorCode GroupFacets(EqmMesh mesh, PetscInt **start, PetscInt **facet)
 {
   PetscInt *first, *list, key[3];
@@ -174,7 +174,8 @@ static PetscErrorCode OrderLoopOnRoot(EqmMesh mesh, PetscInt n, LoopEdge *mine, 
   PetscCallMPI(MPI_Scatterv(all_answers, count, start, edge_type, answer, num_mine, edge_type, 0, mesh->comm));
   PetscCallMPI(MPI_Type_free(&edge_type));
   PetscCallMPI(MPI_Bcast(&closed, 1, MPIU_BOOL, 0, mesh->comm));
-  if (!closed) EqmFail(mesh->comm, EQM_ERR_MESH, "the boundary is not one closed loop; 'equimap check' says what is wrong");
+  if (!closed)
+    EqmFail(mesh->comm, EQM_ERR_MESH, "the boundary is not one closed loop; 'equimap check' says what is wrong");
   for (PetscInt e = 0; e < n; e++) {
     place[e] = (PetscInt)answer[2 * e];
     arc[e] = answer[2 * e + 1];
@@ -194,7 +195,8 @@ PetscErrorCode EqmMeshBoundaryLoop(EqmMesh mesh, PetscInt *place, PetscReal *arc
 
   PetscFunctionBegin;
   PetscCheck(mesh->cell_size == 3, mesh->comm, PETSC_ERR_ARG_WRONG, "only the boundary of a surface is a loop");
-  PetscCall(PetscMalloc4(num_facets, &edge, num_facets, &edge_place, num_facets, &edge_arc, 2 * mesh->num_local, &both));
+  PetscCall(
+      PetscMalloc4(num_facets, &edge, num_facets, &edge_place, num_facets, &edge_arc, 2 * mesh->num_local, &both));
   for (PetscInt e = 0; e < num_facets; e++) {
     const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
     const PetscReal *const p = mesh->position + 3 * i, *const q = mesh->position + 3 * j;

@@ -23,8 +23,8 @@ PETSC_INTERN PetscErrorCode EqmStarsCollect(EqmSoup soup, const PetscInt *owner_
 PETSC_INTERN PetscErrorCode EqmStarsReset(EqmStars *stars);
 PETSC_INTERN PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *vertices, PetscSF *sf);
 PETSC_INTERN PetscErrorCode EqmSoupSlabOwner(EqmSoup soup, PetscInt **starts);
-PETSC_INTERN PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells, const PetscInt *cells,
-                                            EqmGraph *graph);
+PETSC_INTERN PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells,
+                                            const PetscInt *cells, EqmGraph *graph);
 PETSC_INTERN PetscErrorCode EqmGraphReset(EqmGraph *graph);
 PETSC_INTERN PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *owner_of_slab);
 PETSC_INTERN PetscErrorCode EqmOrderCuthillMcKee(const EqmGraph *graph, PetscInt *new_number);

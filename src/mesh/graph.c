@@ -3,8 +3,8 @@
 #include <petscmat.h>
 
 /* Cells around each row vertex, as compressed rows. Vertices >= num_rows are ignored. */
-static PetscErrorCode CellsAround(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells, const PetscInt *cells, PetscInt **start,
-                                  PetscInt **around)
+static PetscErrorCode CellsAround(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells, const PetscInt *cells,
+                                  PetscInt **start, PetscInt **around)
 {
   PetscInt *first, *list;
 
@@ -26,9 +26,10 @@ static PetscErrorCode CellsAround(PetscInt num_rows, PetscInt cell_size, PetscIn
   PetscFunctionReturn(0);
 }
 
-/* The graph of vertices that share a cell: rows for the vertices 0 .. num_rows-1, neighbours among all vertices that the
-   cells name, without the vertex itself, each once. Not collective. */
-PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells, const PetscInt *cells, EqmGraph *graph)
+/* The graph of vertices that share a cell: rows for the vertices 0 .. num_rows-1, neighbours among all vertices that
+   the cells name, without the vertex itself, each once. Not collective. */
+PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells, const PetscInt *cells,
+                               EqmGraph *graph)
 {
   PetscInt *first, *around, *mark, num_vertices = num_rows, count = 0;
 

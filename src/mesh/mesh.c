@@ -2,8 +2,8 @@
 #include "mesh/build.h"
 
 /* Local numbers: the input numbers of owned vertices (sorted), then those of the ghosts. */
-static PetscErrorCode CollectVertices(const EqmStars *stars, PetscInt rank, PetscInt *num_owned, PetscInt **owned, PetscInt *num_ghosts,
-                                      PetscInt **ghosts)
+static PetscErrorCode CollectVertices(const EqmStars *stars, PetscInt rank, PetscInt *num_owned, PetscInt **owned,
+                                      PetscInt *num_ghosts, PetscInt **ghosts)
 {
   const PetscInt cs = stars->cell_size, n = cs * stars->num_cells;
   PetscInt no = 0, ng = 0;
@@ -14,8 +14,10 @@ static PetscErrorCode CollectVertices(const EqmStars *stars, PetscInt rank, Pets
   for (PetscInt c = 0; c < stars->num_cells; c++) {
     const PetscInt *const record = stars->records + stars->width * c;
     for (PetscInt a = 0; a < cs; a++) {
-      if (record[1 + cs + a] == rank) (*owned)[no++] = record[1 + a];
-      else (*ghosts)[ng++] = record[1 + a];
+      if (record[1 + cs + a] == rank)
+        (*owned)[no++] = record[1 + a];
+      else
+        (*ghosts)[ng++] = record[1 + a];
     }
   }
   PetscCall(PetscSortRemoveDupsInt(&no, *owned));
@@ -45,7 +47,8 @@ static PetscErrorCode LocalCells(const EqmStars *stars, PetscInt num_owned, cons
 }
 
 /* Global numbers of the ghosts: owners tell the slabs of the input numbering, the ghosts ask there. */
-static PetscErrorCode NumberGhosts(EqmMesh mesh, EqmSoup soup, PetscInt num_ghosts, const PetscInt *ghost_input, PetscInt *ghost_global)
+static PetscErrorCode NumberGhosts(EqmMesh mesh, EqmSoup soup, PetscInt num_ghosts, const PetscInt *ghost_input,
+                                   PetscInt *ghost_global)
 {
   PetscInt *directory, *mine;
   PetscSF to_slab, from_slab;
@@ -98,7 +101,8 @@ static PetscErrorCode NumberVertices(EqmMesh mesh, EqmSoup soup, PetscInt *owned
 
   for (PetscInt g = 0; g < num_ghosts; g++) ghost_global[ghost_place[g]] = g; /* from here on: new place by old place */
   for (PetscInt k = 0; k < mesh->cell_size * num_cells; k++) {
-    cells[k] = cells[k] < mesh->num_owned ? new_number[cells[k]] : mesh->num_owned + ghost_global[cells[k] - mesh->num_owned];
+    cells[k] =
+        cells[k] < mesh->num_owned ? new_number[cells[k]] : mesh->num_owned + ghost_global[cells[k] - mesh->num_owned];
   }
   PetscCall(PetscFree3(new_number, ghost_global, ghost_place));
   PetscFunctionReturn(0);

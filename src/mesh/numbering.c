@@ -21,7 +21,8 @@ static PetscErrorCode Move(PetscSF sf, PetscInt width, Direction direction, Pets
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmMeshVerticesToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *owned, PetscReal *slab)
+PetscErrorCode EqmMeshVerticesToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *owned,
+                                      PetscReal *slab)
 {
   PetscSF sf;
 
@@ -32,7 +33,8 @@ PetscErrorCode EqmMeshVerticesToInput(EqmMesh mesh, EqmSoup soup, PetscInt width
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *slab, PetscReal *local)
+PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *slab,
+                                        PetscReal *local)
 {
   PetscSF sf;
 

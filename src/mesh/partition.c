@@ -52,8 +52,8 @@ static PetscErrorCode RunMetis(PetscMPIInt num_parts, PetscInt n, PetscInt *star
   PetscFunctionBegin;
   PetscCheck(sizeof(idx_t) == sizeof(PetscInt), PETSC_COMM_SELF, PETSC_ERR_SUP,
              "METIS and PETSc were built with integers of different sizes; build both with the same");
-  result = METIS_PartGraphKway(&num_rows, &num_constraints, (idx_t *)start, (idx_t *)neighbor, NULL, NULL, NULL, &parts, NULL, NULL,
-                               NULL, &cut, (idx_t *)part);
+  result = METIS_PartGraphKway(&num_rows, &num_constraints, (idx_t *)start, (idx_t *)neighbor, NULL, NULL, NULL, &parts,
+                               NULL, NULL, NULL, &cut, (idx_t *)part);
   PetscCheck(result == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_PartGraphKway failed with code %d", result);
   PetscFunctionReturn(0);
 }
@@ -68,7 +68,8 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
   PetscCallMPI(MPI_Comm_size(soup->comm, &size));
-  PetscCall(PetscMalloc5(size, &row_count, size + 1, &row_start, size, &edge_count, size + 1, &edge_start, size, &counts));
+  PetscCall(
+      PetscMalloc5(size, &row_count, size + 1, &row_start, size, &edge_count, size + 1, &edge_start, size, &counts));
   PetscCall(PetscMPIIntCast(num_rows, &mine[0]));
   PetscCall(PetscMPIIntCast(graph->start[num_rows], &mine[1]));
   PetscCallMPI(MPI_Allgather(mine, 2, MPI_INT, counts, 2, MPI_INT, soup->comm));
@@ -82,8 +83,10 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
   PetscCall(PetscMalloc1(num_rows, &degree));
   for (PetscInt i = 0; i < num_rows; i++) degree[i] = graph->start[i + 1] - graph->start[i];
   if (rank == 0) PetscCall(PetscMalloc3(n + 1, &all_start, edge_start[size], &all_neighbor, n, &part));
-  PetscCallMPI(MPI_Gatherv(degree, row_count[rank], MPIU_INT, all_start, row_count, row_start, MPIU_INT, 0, soup->comm));
-  PetscCallMPI(MPI_Gatherv(graph->neighbor, edge_count[rank], MPIU_INT, all_neighbor, edge_count, edge_start, MPIU_INT, 0, soup->comm));
+  PetscCallMPI(
+      MPI_Gatherv(degree, row_count[rank], MPIU_INT, all_start, row_count, row_start, MPIU_INT, 0, soup->comm));
+  PetscCallMPI(MPI_Gatherv(graph->neighbor, edge_count[rank], MPIU_INT, all_neighbor, edge_count, edge_start, MPIU_INT,
+                           0, soup->comm));
   if (rank == 0) {
     PetscInt sum = 0;
     for (PetscInt i = 0; i < n; i++) {
@@ -94,15 +97,16 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
     all_start[n] = sum;
     PetscCall(RunMetis(size, n, all_start, all_neighbor, part));
   }
-  PetscCallMPI(MPI_Scatterv(part, row_count, row_start, MPIU_INT, owner_of_slab, row_count[rank], MPIU_INT, 0, soup->comm));
+  PetscCallMPI(
+      MPI_Scatterv(part, row_count, row_start, MPIU_INT, owner_of_slab, row_count[rank], MPIU_INT, 0, soup->comm));
   if (rank == 0) PetscCall(PetscFree3(all_start, all_neighbor, part));
   PetscCall(PetscFree(degree));
   PetscCall(PetscFree5(row_count, row_start, edge_count, edge_start, counts));
   PetscFunctionReturn(0);
 }
 
-/* The owning rank of every vertex of this rank's slab. Option: -partition metis (fewest cut edges) or slab (as the file has
-   them, for comparison). Collective. */
+/* The owning rank of every vertex of this rank's slab. Option: -partition metis (fewest cut edges) or slab (as the file
+   has them, for comparison). Collective. */
 PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *owner_of_slab)
 {
   const char *const kinds[] = {"metis", "slab"};

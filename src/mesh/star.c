@@ -9,7 +9,8 @@ PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *
   PetscLayout layout;
 
   PetscFunctionBegin;
-  PetscCall(PetscLayoutCreateFromSizes(soup->comm, soup->vertex_end - soup->vertex_start, soup->num_vertices, 1, &layout));
+  PetscCall(
+      PetscLayoutCreateFromSizes(soup->comm, soup->vertex_end - soup->vertex_start, soup->num_vertices, 1, &layout));
   PetscCall(PetscSFCreate(soup->comm, sf));
   PetscCall(PetscSFSetGraphLayout(*sf, layout, num_leaves, NULL, PETSC_OWN_POINTER, vertices));
   PetscCall(PetscSFSetUp(*sf));

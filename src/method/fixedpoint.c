@@ -1,4 +1,5 @@
-/* The fixed-point iteration of stretch energy minimisation: disk with a moving boundary (000 (14)), square (002 Algorithm 1). */
+/* The fixed-point iteration of stretch energy minimisation: disk with a moving boundary (000 (14)), square (002
+ * Algorithm 1). */
 #include "method/method.h"
 
 typedef struct {
@@ -15,8 +16,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscFunctionBegin;
   PetscCall(PetscNew(&fp));
   solver->data = fp;
-  PetscCall(PetscMalloc4(3 * mesh->num_local_cells, &fp->weights, 2 * mesh->num_owned, &fp->columns, 2 * mesh->num_local, &fp->inverted,
-                         mesh->num_local, &fp->group));
+  PetscCall(PetscMalloc4(3 * mesh->num_local_cells, &fp->weights, 2 * mesh->num_owned, &fp->columns,
+                         2 * mesh->num_local, &fp->inverted, mesh->num_local, &fp->group));
   for (PetscInt v = 0; v < mesh->num_local; v++) fp->group[v] = mesh->on_boundary[v] ? 1 : 0;
   PetscCall(EqmPlaceCreate(solver->domain, &fp->to));
   solver->gradient_norm = -1.;
@@ -35,7 +36,8 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* New columns for one group of vertices: -L_gg^-1 L_gh z_h, where `z` (per local vertex, two coordinates) is zero on the group. */
+/* New columns for one group of vertices: -L_gg^-1 L_gh z_h, where `z` (per local vertex, two coordinates) is zero on
+ * the group. */
 static PetscErrorCode SolveGroup(EqmSolver solver, signed char group, const PetscReal *z)
 {
   FixedPoint *const fp = solver->data;
@@ -53,7 +55,8 @@ static PetscErrorCode SolveGroup(EqmSolver solver, signed char group, const Pets
   PetscFunctionReturn(0);
 }
 
-/* 000 (14b): the boundary follows the interior, inverted in the circle; then centred (14d) and put on the circle (14e). */
+/* 000 (14b): the boundary follows the interior, inverted in the circle; then centred (14d) and put on the circle (14e).
+ */
 static PetscErrorCode MoveBoundary(EqmSolver solver)
 {
   FixedPoint *const fp = solver->data;
@@ -74,7 +77,8 @@ static PetscErrorCode MoveBoundary(EqmSolver solver)
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (PetscInt v = 0; v < n; v++) {
     if (fp->group[v] != 1) continue;
-    const PetscReal b[2] = {fp->columns[v] - sum[0] / mesh->num_boundary_vertices, fp->columns[n + v] - sum[1] / mesh->num_boundary_vertices};
+    const PetscReal b[2] = {fp->columns[v] - sum[0] / mesh->num_boundary_vertices,
+                            fp->columns[n + v] - sum[1] / mesh->num_boundary_vertices};
     const PetscReal length = PetscSqrtReal(b[0] * b[0] + b[1] * b[1]);
     for (PetscInt c = 0; c < 2; c++) solver->place.x[2 * v + c] = b[c] / length;
   }

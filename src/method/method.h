@@ -20,7 +20,7 @@ typedef struct {
   PetscReal default_energy_rtol;
   PetscErrorCode (*options)(EqmSolver, PetscOptionItems *); /* may be NULL */
   PetscErrorCode (*set_up)(EqmSolver);                      /* solver->place holds the start */
-  PetscErrorCode (*step)(EqmSolver, EqmStep *);             /* leaves place, image, step_length, gradient_norm, objective */
+  PetscErrorCode (*step)(EqmSolver, EqmStep *); /* leaves place, image, step_length, gradient_norm, objective */
   PetscErrorCode (*destroy)(EqmSolver);
 } EqmMethod;
 
@@ -50,13 +50,13 @@ struct _p_EqmSolver {
   const EqmMethod *method;
   void *data; /* the method's own */
 
-  EqmPlace place;         /* the present map */
-  PetscReal *image;       /* its image measures, per local cell */
-  EqmImageTotals totals;  /* and their sums */
+  EqmPlace place;        /* the present map */
+  PetscReal *image;      /* its image measures, per local cell */
+  EqmImageTotals totals; /* and their sums */
   PetscInt iteration;
   PetscReal step_length, gradient_norm;
-  PetscReal objective; /* what the method minimises; convergence is judged by it */
-  PetscReal *objectives;  /* of every iteration, num_history long */
+  PetscReal objective;   /* what the method minimises; convergence is judged by it */
+  PetscReal *objectives; /* of every iteration, num_history long */
   EqmHistoryRow *history;
   PetscInt num_history, most_history;
   PetscReal last_shown; /* seconds when the last row was printed */
@@ -84,14 +84,15 @@ PETSC_INTERN PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *we
 PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *columns);
 /* Coordinates that are free of constraint solve L x = 0 with all others held: the discrete harmonic map for `weights`.
    `to` gets the result; ghosts up to date. Collective. */
-PETSC_INTERN PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const EqmPlace *from, EqmPlace *to);
+PETSC_INTERN PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const EqmPlace *from,
+                                           EqmPlace *to);
 
 /* ---- first maps (src/start/start.c) */
 PETSC_INTERN PetscErrorCode EqmStartFind(const char *name);
 PETSC_INTERN PetscErrorCode EqmStartNames(char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmStart(EqmSolver solver);
-/* The largest step in (0, 1] along a straight motion that keeps cells of positive area positive, with a margin: .9 of the
-   first zero. `velocity` per local vertex. Collective. */
+/* The largest step in (0, 1] along a straight motion that keeps cells of positive area positive, with a margin: .9 of
+   the first zero. `velocity` per local vertex. Collective. */
 PETSC_INTERN PetscErrorCode EqmStepToFold(EqmSolver solver, const PetscReal *velocity, PetscReal *step);
 
 #endif

@@ -15,7 +15,8 @@ PetscErrorCode EqmMonitorBegin(EqmSolver solver)
 {
   PetscFunctionBegin;
   if (solver->settings.quiet) PetscFunctionReturn(0);
-  PetscCall(PetscPrintf(solver->comm, "%9s  %12s  %11s  %6s  %8s  %9s  %s\n", "iteration", "energy", "SD", "folds", "step", "elapsed", "at most"));
+  PetscCall(PetscPrintf(solver->comm, "%9s  %12s  %11s  %6s  %8s  %9s  %s\n", "iteration", "energy", "SD", "folds",
+                        "step", "elapsed", "at most"));
   PetscFunctionReturn(0);
 }
 
@@ -26,8 +27,9 @@ static PetscErrorCode PrintRow(EqmSolver solver, const EqmHistoryRow *row, Petsc
   const PetscReal remaining = row->iteration > 0 ? (row->seconds - begun) / row->iteration * left : 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(solver->comm, "%s%9" PetscInt_FMT "  %12.5e  %11.4e  %6" PetscInt64_FMT "  %8.4f  %7.1f s", OnTerminal() ? "\r" : "", row->iteration, (double)row->energy,
-                        (double)row->sd, row->folds, (double)row->step, (double)row->seconds));
+  PetscCall(PetscPrintf(solver->comm, "%s%9" PetscInt_FMT "  %12.5e  %11.4e  %6" PetscInt64_FMT "  %8.4f  %7.1f s",
+                        OnTerminal() ? "\r" : "", row->iteration, (double)row->energy, (double)row->sd, row->folds,
+                        (double)row->step, (double)row->seconds));
   if (row->iteration > 0 && left > 0 && !last) PetscCall(PetscPrintf(solver->comm, "  %.0f s more", (double)remaining));
   PetscCall(PetscPrintf(solver->comm, OnTerminal() ? "\033[K" : "\n"));
   PetscFunctionReturn(0);
@@ -48,8 +50,13 @@ PetscErrorCode EqmMonitorRow(EqmSolver solver)
   PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
   solver->objectives[solver->num_history] = solver->objective;
   row = &solver->history[solver->num_history++];
-  *row = (EqmHistoryRow){.iteration = solver->iteration, .energy = solver->totals.energy, .sd = solver->totals.sd, .folds = solver->totals.folds, .step = solver->step_length,
-                         .gradient_norm = solver->gradient_norm, .work = *work};
+  *row = (EqmHistoryRow){.iteration = solver->iteration,
+                         .energy = solver->totals.energy,
+                         .sd = solver->totals.sd,
+                         .folds = solver->totals.folds,
+                         .step = solver->step_length,
+                         .gradient_norm = solver->gradient_norm,
+                         .work = *work};
   PetscCall(EqmLedgerGetSeconds(solver->mesh->ledger, NULL, NULL, &row->seconds));
   if (solver->settings.quiet) PetscFunctionReturn(0);
   if (OnTerminal() || solver->num_history == 1 || row->seconds >= solver->last_shown + log_interval) {
@@ -65,6 +72,7 @@ PetscErrorCode EqmMonitorEnd(EqmSolver solver)
   PetscFunctionBegin;
   if (solver->settings.quiet) PetscFunctionReturn(0);
   PetscCall(PrintRow(solver, &solver->history[solver->num_history - 1], PETSC_TRUE));
-  PetscCall(PetscPrintf(solver->comm, "%s%s: %s\n", OnTerminal() ? "\n" : "", EqmStatusName(solver->status), solver->message));
+  PetscCall(PetscPrintf(solver->comm, "%s%s: %s\n", OnTerminal() ? "\n" : "", EqmStatusName(solver->status),
+                        solver->message));
   PetscFunctionReturn(0);
 }

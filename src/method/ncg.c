@@ -1,8 +1,10 @@
-/* Preconditioned nonlinear conjugate gradients (000 Algorithm 1), with refreshed preconditioner, other betas and a guard. */
+/* Preconditioned nonlinear conjugate gradients (000 Algorithm 1), with refreshed preconditioner, other betas and a
+ * guard. */
 #include "method/method.h"
 
 enum { BETA_FR, BETA_PR, BETA_HZ };
-static const char *const ncg_betas[] = {"fletcher-reeves", "polak-ribiere", "hager-zhang", "EqmNcgBeta", "EQM_NCG_", NULL};
+static const char *const ncg_betas[] = {"fletcher-reeves", "polak-ribiere", "hager-zhang",
+                                        "EqmNcgBeta",      "EQM_NCG_",      NULL};
 
 typedef struct {
   Vec gradient, preconditioned, direction, old_gradient, old_preconditioned, trial_gradient;
@@ -43,7 +45,8 @@ static PetscErrorCode Precondition(EqmSolver solver, Vec g, Vec h)
   PetscCall(EqmGroupSolve(solver, 2, ncg->columns));
   PetscCall(VecGetArrayWrite(h, &to));
   for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt k = 0; k < domain->dof_count[v]; k++) to[domain->dof_start[v] - domain->dof_first + k] = ncg->columns[k * n + v];
+    for (PetscInt k = 0; k < domain->dof_count[v]; k++)
+      to[domain->dof_start[v] - domain->dof_first + k] = ncg->columns[k * n + v];
   }
   PetscCall(VecRestoreArrayWrite(h, &to));
   PetscFunctionReturn(0);
@@ -57,8 +60,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscFunctionBegin;
   PetscCall(PetscNew(&ncg));
   solver->data = ncg;
-  PetscCall(PetscMalloc4(3 * mesh->num_local_cells, &ncg->weights, 2 * mesh->num_owned, &ncg->columns, mesh->num_local, &ncg->group,
-                         mesh->num_local_cells, &ncg->image));
+  PetscCall(PetscMalloc4(3 * mesh->num_local_cells, &ncg->weights, 2 * mesh->num_owned, &ncg->columns, mesh->num_local,
+                         &ncg->group, mesh->num_local_cells, &ncg->image));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     ncg->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
   }
@@ -75,7 +78,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(Precondition(solver, ncg->gradient, ncg->preconditioned));
   PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
   PetscCall(VecScale(ncg->direction, -1.));
-  ncg->alpha = 2. * solver->domain->target_measure; /* 000 section 3.1, where the mesh has the area of the target, not one */
+  ncg->alpha =
+      2. * solver->domain->target_measure; /* 000 section 3.1, where the mesh has the area of the target, not one */
   PetscFunctionReturn(0);
 }
 
@@ -106,8 +110,8 @@ static PetscErrorCode TryStep(EqmSolver solver, PetscReal alpha, PetscReal *ener
   PetscFunctionReturn(0);
 }
 
-/* 000 (18): the minimum of the parabola through Phi(0), Phi'(0) and Phi at the previous step length. Where the parabola opens
-   downward, the previous length is doubled. */
+/* 000 (18): the minimum of the parabola through Phi(0), Phi'(0) and Phi at the previous step length. Where the parabola
+   opens downward, the previous length is doubled. */
 static PetscErrorCode ParabolaStep(EqmSolver solver, PetscReal slope, PetscReal *alpha)
 {
   Ncg *const ncg = solver->data;
@@ -131,8 +135,9 @@ static PetscErrorCode TryGradient(EqmSolver solver, PetscReal alpha, PetscReal *
   PetscFunctionReturn(0);
 }
 
-/* What the convergence theorem takes for granted and (18) does not give: sufficient decrease and an ordered boundary. The
-   step is shortened until both hold; `alpha` 0 if none does. Leaves map, energy and gradient of the step in the trial. */
+/* What the convergence theorem takes for granted and (18) does not give: sufficient decrease and an ordered boundary.
+   The step is shortened until both hold; `alpha` 0 if none does. Leaves map, energy and gradient of the step in the
+   trial. */
 static PetscErrorCode Safeguard(EqmSolver solver, PetscReal slope, PetscReal *alpha, PetscReal *energy)
 {
   Ncg *const ncg = solver->data;
@@ -144,7 +149,8 @@ static PetscErrorCode Safeguard(EqmSolver solver, PetscReal slope, PetscReal *al
     PetscBool in_order;
     PetscCall(EqmDomainBoundaryInOrder(solver->domain, &ncg->trial, &in_order));
     if (in_order && *energy <= solver->objective + 1e-4 * *alpha * slope) PetscFunctionReturn(0);
-    const PetscReal curvature = *energy - solver->objective - *alpha * slope, parabola = -*alpha * *alpha * slope / (2. * curvature);
+    const PetscReal curvature = *energy - solver->objective - *alpha * slope,
+                    parabola = -*alpha * *alpha * slope / (2. * curvature);
     *alpha = in_order && curvature > 0. ? PetscMin(.5 * *alpha, PetscMax(.1 * *alpha, parabola)) : .5 * *alpha;
     PetscCall(TryGradient(solver, *alpha, energy));
   }
@@ -228,12 +234,14 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
 {
   PetscFunctionBegin;
-  PetscCall(PetscOptionsBoundedInt("-ncg_refresh", "ncg: renew the preconditioner every so many iterations and restart; 0: never (as printed)", "EqmSolverSetFromOptions",
-                                   solver->settings.ncg_refresh, &solver->settings.ncg_refresh, NULL, 0));
-  PetscCall(PetscOptionsEnum("-ncg_beta", "ncg: how the directions are conjugated", "EqmSolverSetFromOptions", ncg_betas, solver->settings.ncg_beta,
-                             &solver->settings.ncg_beta, NULL));
-  PetscCall(PetscOptionsBool("-ncg_guard", "ncg: shorten a step of (18) that does not decrease the energy or disorders the boundary", "EqmSolverSetFromOptions",
-                             solver->settings.ncg_guard, &solver->settings.ncg_guard, NULL));
+  PetscCall(PetscOptionsBoundedInt(
+      "-ncg_refresh", "ncg: renew the preconditioner every so many iterations and restart; 0: never (as printed)",
+      "EqmSolverSetFromOptions", solver->settings.ncg_refresh, &solver->settings.ncg_refresh, NULL, 0));
+  PetscCall(PetscOptionsEnum("-ncg_beta", "ncg: how the directions are conjugated", "EqmSolverSetFromOptions",
+                             ncg_betas, solver->settings.ncg_beta, &solver->settings.ncg_beta, NULL));
+  PetscCall(PetscOptionsBool("-ncg_guard",
+                             "ncg: shorten a step of (18) that does not decrease the energy or disorders the boundary",
+                             "EqmSolverSetFromOptions", solver->settings.ncg_guard, &solver->settings.ncg_guard, NULL));
   PetscFunctionReturn(0);
 }
 

@@ -49,9 +49,13 @@ static PetscErrorCode Begin(EqmSolver solver)
 
   PetscFunctionBegin;
   PetscCall(EqmPhaseBegin(mesh->ledger, EQM_PHASE_START));
-  if (!strcmp(solver->target, "disk")) PetscCall(EqmDomainCreateDisk(mesh, &solver->domain));
-  else if (!strcmp(solver->target, "square")) PetscCall(EqmDomainCreateSquare(mesh, solver->settings.has_corners ? solver->settings.corners : NULL, &solver->domain));
-  else EqmFail(solver->comm, EQM_ERR_USAGE, "there is no target '%s'; choose disk or square", solver->target);
+  if (!strcmp(solver->target, "disk"))
+    PetscCall(EqmDomainCreateDisk(mesh, &solver->domain));
+  else if (!strcmp(solver->target, "square"))
+    PetscCall(
+        EqmDomainCreateSquare(mesh, solver->settings.has_corners ? solver->settings.corners : NULL, &solver->domain));
+  else
+    EqmFail(solver->comm, EQM_ERR_USAGE, "there is no target '%s'; choose disk or square", solver->target);
   PetscCall(EqmOrderingCreate(mesh, &solver->ordering));
   PetscCall(EqmPlaceCreate(solver->domain, &solver->place));
   PetscCall(PetscMalloc1(mesh->num_local_cells, &solver->image));
@@ -84,20 +88,27 @@ static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
   *stop = PETSC_TRUE;
   solver->status = EQM_STATUS_CONVERGED;
   if (set->energy_target > 0. && solver->totals.energy <= set->energy_target) {
-    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %g", (double)set->energy_target));
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %g",
+                            (double)set->energy_target));
   } else if (solver->gradient_norm >= 0. && solver->gradient_norm <= set->gradient_tol) {
-    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the gradient's norm is below %g", (double)set->gradient_tol));
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the gradient's norm is below %g",
+                            (double)set->gradient_tol));
   } else if (Stagnates(solver)) {
-    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the objective fell by less than %g per iteration over the last %" PetscInt_FMT " iterations",
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                            "the objective fell by less than %g per iteration over the last %" PetscInt_FMT
+                            " iterations",
                             (double)set->energy_rtol, set->stagnation));
   } else {
     solver->status = EQM_STATUS_NOT_CONVERGED;
     if (solver->iteration >= set->max_it) {
-      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped after -max_it %" PetscInt_FMT " iterations", set->max_it));
+      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                              "stopped after -max_it %" PetscInt_FMT " iterations", set->max_it));
     } else if (set->max_factorizations > 0 && work->coupled_factorizations >= set->max_factorizations) {
-      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped after -max_factorizations %" PetscInt_FMT, set->max_factorizations));
+      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                              "stopped after -max_factorizations %" PetscInt_FMT, set->max_factorizations));
     } else if (set->wall_time > 0. && seconds >= set->wall_time) {
-      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %g s", (double)set->wall_time));
+      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %g s",
+                              (double)set->wall_time));
     } else {
       *stop = PETSC_FALSE;
     }
@@ -118,11 +129,14 @@ static PetscErrorCode Iterate(EqmSolver solver)
     PetscCall(solver->method->step(solver, &outcome));
     if (outcome == EQM_STEP_STALLED) {
       solver->status = EQM_STATUS_NOT_CONVERGED;
-      PetscCall(PetscStrncpy(solver->message, "no step decreases the objective any more: the limit of this method and this arithmetic", sizeof(solver->message)));
+      PetscCall(PetscStrncpy(solver->message,
+                             "no step decreases the objective any more: the limit of this method and this arithmetic",
+                             sizeof(solver->message)));
       break;
     }
     solver->iteration++;
-    PetscCheck(!PetscIsInfOrNanReal(solver->totals.energy), solver->comm, PETSC_ERR_FP, "the energy is not finite after iteration %" PetscInt_FMT, solver->iteration);
+    PetscCheck(!PetscIsInfOrNanReal(solver->totals.energy), solver->comm, PETSC_ERR_FP,
+               "the energy is not finite after iteration %" PetscInt_FMT, solver->iteration);
     PetscCall(EqmMonitorRow(solver));
     PetscCall(ShouldStop(solver, &stop));
   }
@@ -140,7 +154,9 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
   PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   if (solver->totals.folds > 0) {
     solver->status = EQM_STATUS_FOLDS;
-    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "%" PetscInt64_FMT " triangles of the map are folded over; try the default method, or -start guarded",
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                            "%" PetscInt64_FMT
+                            " triangles of the map are folded over; try the default method, or -start guarded",
                             solver->totals.folds));
   }
   PetscCall(EqmMonitorEnd(solver));

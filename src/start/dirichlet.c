@@ -16,8 +16,10 @@ static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
   for (PetscInt a = 0; a < 3; a++) {
     const PetscBool fixed = (PetscBool)(g->group[v[a]] == EQM_GROUP_FIXED);
     for (PetscInt b = 0; b < 3; b++) {
-      if (a == b) matrix[4 * a] = fixed ? 1. : w[(a + 1) % 3] + w[(a + 2) % 3];
-      else matrix[3 * a + b] = fixed || g->group[v[a]] != g->group[v[b]] ? 0. : -w[3 - a - b];
+      if (a == b)
+        matrix[4 * a] = fixed ? 1. : w[(a + 1) % 3] + w[(a + 2) % 3];
+      else
+        matrix[3 * a + b] = fixed || g->group[v[a]] != g->group[v[b]] ? 0. : -w[3 - a - b];
     }
   }
 }
@@ -47,7 +49,8 @@ PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const 
   PetscCall(EqmLinearFactor(solver->scalar, CellLaplacian, &matrix, 1., &success));
   if (!success) {
     EqmFail(solver->comm, EQM_ERR_MESH,
-            "a Laplacian of this mesh is not positive definite (very obtuse or degenerate triangles); remesh, or start with -start tutte");
+            "a Laplacian of this mesh is not positive definite (very obtuse or degenerate triangles); remesh, or start "
+            "with -start tutte");
   }
   PetscFunctionReturn(0);
 }
@@ -62,12 +65,13 @@ PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *colu
 /* May coordinate c of a vertex of this kind move? */
 static PetscBool CoordinateIsFree(EqmVertexKind kind, PetscInt c)
 {
-  return (PetscBool)(kind == EQM_VERTEX_FREE || (kind == EQM_VERTEX_SIDE_X && c == 0) || (kind == EQM_VERTEX_SIDE_Y && c == 1));
+  return (PetscBool)(kind == EQM_VERTEX_FREE || (kind == EQM_VERTEX_SIDE_X && c == 0) ||
+                     (kind == EQM_VERTEX_SIDE_Y && c == 1));
 }
 
 /* Right-hand side for coordinate c: what the held values put on the free ones. */
-static PetscErrorCode HeldValues(EqmSolver solver, const PetscReal *weights, const signed char *group, const EqmPlace *from, PetscInt c,
-                                 PetscReal *scratch, PetscReal *rhs)
+static PetscErrorCode HeldValues(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                                 const EqmPlace *from, PetscInt c, PetscReal *scratch, PetscReal *rhs)
 {
   const EqmMesh mesh = solver->mesh;
   const PetscInt dim = solver->domain->dim;
@@ -88,7 +92,8 @@ PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const 
   PetscReal *scratch, *columns;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(mesh->num_local, &group, mesh->num_local, &previous, mesh->num_local, &scratch, dim * n, &columns));
+  PetscCall(
+      PetscMalloc4(mesh->num_local, &group, mesh->num_local, &previous, mesh->num_local, &scratch, dim * n, &columns));
   for (PetscInt c = 0; c < dim;) {
     PetscInt same = 0; /* coordinates in a row that have the same vertices free share a factor */
     for (; c + same < dim; same++) {
@@ -105,7 +110,8 @@ PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const 
     PetscCall(EqmGroupFactor(solver, weights, previous));
     PetscCall(EqmGroupSolve(solver, same, columns));
     for (PetscInt v = 0; v < n; v++) {
-      for (PetscInt k = 0; k < same; k++) to->x[dim * v + c + k] = previous[v] == EQM_GROUP_FIXED ? from->x[dim * v + c + k] : columns[k * n + v];
+      for (PetscInt k = 0; k < same; k++)
+        to->x[dim * v + c + k] = previous[v] == EQM_GROUP_FIXED ? from->x[dim * v + c + k] : columns[k * n + v];
     }
     c += same;
   }

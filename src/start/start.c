@@ -10,9 +10,11 @@ typedef struct {
 
 static const StartRow starts[] = {
     {"harmonic", "boundary by arc length, interior by cotangent weights", EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
-    {"fixed-point", "harmonic, then fixed-point steps with the boundary held (000 Algorithm 1, lines 4-7)", EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 4},
+    {"fixed-point", "harmonic, then fixed-point steps with the boundary held (000 Algorithm 1, lines 4-7)",
+     EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 4},
     {"tutte", "boundary by arc length, interior by equal weights: never folds", EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 0},
-    {"guarded", "tutte, then fixed-point steps that stop short of the first fold", EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 5},
+    {"guarded", "tutte, then fixed-point steps that stop short of the first fold", EQM_LAPLACIAN_UNIFORM, PETSC_TRUE,
+     5},
 };
 enum { NUM_STARTS = sizeof(starts) / sizeof(starts[0]) };
 

@@ -1,0 +1,57 @@
+/* The parts of Levenberg-Marquardt on log ratios; what it does is told in lm.c. */
+#ifndef EQM_LM_H
+#define EQM_LM_H
+
+#include "method/method.h"
+#include "method/pairs.h"
+
+/* The residual of a map and what it adds up to. */
+typedef struct {
+  EqmPlace place;
+  PetscReal *image, *residual; /* per local cell */
+  PetscReal squares;           /* sum w rho^2 */
+  PetscReal objective;         /* with the angle energy; infinite for a map that folds or disorders the boundary */
+} EqmTrial;
+
+typedef struct {
+  EqmLinear linear;
+  PetscReal mu, epsilon, angle_weight; /* angle_weight: eps / T */
+  PetscReal level;                     /* balanced: log A, held during an iteration */
+  EqmTrial now, best, attempt;
+  PetscReal *laplacian;           /* cotangent weights of the mesh, if epsilon > 0 */
+  PetscReal *rate, *bend, *slope; /* per local cell: d rho along the step; second derivative; d rho / d a */
+  PetscReal *velocity, *acceleration, *ambient;
+  Vec descent, mean, step, curve, move; /* -b, g, d, d2, t d + t^2 d2 */
+  Vec solved_mean;                      /* y = H^-1 g */
+  Vec old_descent, direction;           /* of the quasi-Newton steps */
+  EqmPairs pairs;
+} EqmLm;
+
+/* rho and its first two derivatives by l = log((a/w)/A). */
+static inline void EqmLmResidual(PetscBool balanced, PetscReal l, PetscReal *rho, PetscReal *first, PetscReal *second)
+{
+  const PetscBool stretched = (PetscBool)(balanced && l > 0.);
+  *rho = stretched ? PetscExpReal(l) - 1. : l;
+  *first = stretched ? PetscExpReal(l) : 1.;
+  *second = stretched ? PetscExpReal(l) : 0.;
+}
+
+/* lm_residual.c */
+PETSC_INTERN PetscErrorCode EqmLmWeightedSum(EqmMesh mesh, const PetscReal *x, PetscInt power, PetscReal *sum);
+PETSC_INTERN PetscErrorCode EqmLmRemoveMean(EqmMesh mesh, PetscReal *x);
+PETSC_INTERN PetscErrorCode EqmLmAngleEnergy(EqmSolver solver, const PetscReal *x, PetscReal *energy);
+PETSC_INTERN PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial);
+/* lm_model.c */
+PETSC_INTERN PetscErrorCode EqmLmGradient(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmLmLinearise(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmLmFactor(EqmSolver solver, PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmLmSolveForStep(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmLmSolveForCurve(EqmSolver solver, PetscReal *ratio);
+PETSC_INTERN PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease);
+PETSC_INTERN PetscErrorCode EqmLmApplyInverse(void *solver, Vec q);
+/* lm_search.c */
+PETSC_INTERN PetscErrorCode EqmLmSearch(EqmSolver solver, PetscReal ratio, PetscReal predicted, PetscReal *best_t);
+PETSC_INTERN PetscErrorCode EqmLmInnerSteps(EqmSolver solver);
+PETSC_INTERN void EqmLmSwap(EqmTrial *a, EqmTrial *b);
+
+#endif

@@ -1,0 +1,248 @@
+/* The Gauss-Newton model at the present map: matrix, right-hand sides, step and bend. */
+#include "method/lm.h"
+#include "energy/kernel.h"
+
+/* Gauss-Newton, metric and angle energy of one cell, in the degrees of freedom of its vertices. */
+static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
+{
+  const EqmSolver solver = context;
+  const EqmLm *const lm = solver->data;
+  const EqmMesh mesh = solver->mesh;
+  const PetscInt *const v = mesh->cells + 3 * cell;
+  const PetscReal *const x = lm->now.place.x;
+  const PetscReal floor = .3 * PetscSqrtReal(lm->now.squares);
+  const PetscReal elastic = .5 * PetscSqrtReal(3.) * lm->mu * (PetscAbsReal(lm->now.residual[cell]) + floor);
+  const PetscReal angle = .5 * lm->angle_weight, gauss = mesh->weight[cell] * lm->slope[cell] * lm->slope[cell];
+  PetscReal gradient[6], basis[6][2];
+  PetscInt corner[6], n = 0;
+
+  EqmArea2Gradient(x + 2 * v[0], x + 2 * v[1], x + 2 * v[2], gradient);
+  for (PetscInt a = 0; a < 3; a++) {
+    PetscReal frame[9];
+    const PetscInt count = EqmDomainFrame(solver->domain, &lm->now.place, v[a], frame);
+    for (PetscInt k = 0; k < count; k++) {
+      corner[n] = a;
+      basis[n][0] = frame[2 * k];
+      basis[n++][1] = frame[2 * k + 1];
+    }
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal gi = gradient[2 * corner[i]] * basis[i][0] + gradient[2 * corner[i] + 1] * basis[i][1];
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal gj = gradient[2 * corner[j]] * basis[j][0] + gradient[2 * corner[j] + 1] * basis[j][1];
+      const PetscReal dot = basis[i][0] * basis[j][0] + basis[i][1] * basis[j][1];
+      const PetscInt a = corner[i], b = corner[j];
+      PetscReal entry = gauss * gi * gj + elastic * dot * (a == b ? 2. / 3. : -1. / 3.);
+      if (angle > 0.) { /* L - Hess A; Hess A couples x of one corner with y of the next: +-1/2 */
+        const PetscReal *const w = lm->laplacian + 3 * cell;
+        const PetscReal cross = basis[i][0] * basis[j][1] - basis[i][1] * basis[j][0];
+        entry += angle * dot * (a == b ? w[(a + 1) % 3] + w[(a + 2) % 3] : -w[3 - a - b]);
+        if (a != b) entry -= angle * cross * (b == (a + 1) % 3 ? .5 : -.5);
+      }
+      matrix[n * i + j] = entry;
+    }
+  }
+}
+
+/* sum over cells of value * w * slope * grad a (+ angle gradient), in degrees of freedom. */
+static PetscErrorCode PullBack(EqmSolver solver, const PetscReal *value, PetscBool with_angle, Vec result)
+{
+  EqmLm *const lm = solver->data;
+  const EqmMesh mesh = solver->mesh;
+  const PetscReal angle = with_angle ? .5 * lm->angle_weight : 0.;
+  PetscReal *scaled, *pull;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(mesh->num_local_cells, &scaled, 2 * mesh->num_owned, &pull));
+#pragma omp parallel for schedule(static)
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++)
+    scaled[c] = mesh->weight[c] * lm->slope[c] * (value ? value[c] : 1.) - angle;
+  PetscCall(EqmImageGradient(solver->domain, &lm->now.place, scaled, lm->ambient));
+  if (angle > 0.) {
+    PetscCall(EqmLaplacianApply(mesh, lm->laplacian, 2, lm->now.place.x, pull));
+    for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) lm->ambient[k] += angle * pull[k];
+  }
+  PetscCall(PetscFree2(scaled, pull));
+  PetscCall(EqmDomainProject(solver->domain, &lm->now.place, lm->ambient, result));
+  PetscFunctionReturn(0);
+}
+
+/* The mean's rank-one term, by Sherman and Morrison: z += y (g.z) / (1 - g.y). Nothing to do for the balanced residual.
+ */
+static PetscErrorCode AddMeanTerm(EqmLm *lm, Vec z)
+{
+  PetscReal gz, gy;
+
+  PetscFunctionBegin;
+  if (lm->epsilon > 0.) PetscFunctionReturn(0);
+  PetscCall(VecDot(lm->mean, z, &gz));
+  PetscCall(VecDot(lm->mean, lm->solved_mean, &gy));
+  PetscCall(VecAXPY(z, gz / PetscMax(1. - gy, 1e-12), lm->solved_mean));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Norm(EqmMesh mesh, PetscInt n, const PetscReal *x, PetscReal *norm)
+{
+  PetscReal local = 0., sum;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < n; k++) local += x[k] * x[k];
+  PetscCall(MPIU_Allreduce(&local, &sum, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+  *norm = PetscSqrtReal(sum);
+  PetscFunctionReturn(0);
+}
+
+/* d and y from the present factor. */
+PetscErrorCode EqmLmSolveForStep(EqmSolver solver)
+{
+  EqmLm *const lm = solver->data;
+  const PetscInt n = solver->domain->num_dofs, num_rhs = lm->epsilon > 0. ? 1 : 2;
+  const PetscScalar *b, *g;
+  PetscScalar *d, *y;
+  PetscReal *columns;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(2 * n, &columns));
+  PetscCall(VecGetArrayRead(lm->descent, &b));
+  PetscCall(VecGetArrayRead(lm->mean, &g));
+  PetscCall(PetscArraycpy(columns, b, n));
+  PetscCall(PetscArraycpy(columns + n, g, n));
+  PetscCall(VecRestoreArrayRead(lm->descent, &b));
+  PetscCall(VecRestoreArrayRead(lm->mean, &g));
+  PetscCall(EqmLinearSolve(lm->linear, num_rhs, columns, columns));
+  PetscCall(VecGetArrayWrite(lm->step, &d));
+  PetscCall(VecGetArrayWrite(lm->solved_mean, &y));
+  PetscCall(PetscArraycpy(d, columns, n));
+  PetscCall(PetscArraycpy(y, columns + n, n));
+  PetscCall(VecRestoreArrayWrite(lm->step, &d));
+  PetscCall(VecRestoreArrayWrite(lm->solved_mean, &y));
+  PetscCall(PetscFree(columns));
+  PetscCall(AddMeanTerm(lm, lm->step));
+  PetscFunctionReturn(0);
+}
+
+/* Geodesic acceleration: d2 = -1/2 H^-1 J^T W rho'' along the geodesic of velocity d; `ratio` = |d2| / |d| as
+ * displacements. */
+PetscErrorCode EqmLmSolveForCurve(EqmSolver solver, PetscReal *ratio)
+{
+  EqmLm *const lm = solver->data;
+  const EqmMesh mesh = solver->mesh;
+  PetscReal step_norm, curve_norm;
+  PetscScalar *array;
+
+  PetscFunctionBegin;
+  PetscCall(EqmDomainExpand(solver->domain, &lm->now.place, lm->step, lm->velocity));
+  PetscCall(EqmDomainCurvature(solver->domain, &lm->now.place, lm->velocity, lm->acceleration));
+  PetscCall(EqmImageDerivatives(solver->domain, &lm->now.place, lm->velocity, lm->acceleration, lm->rate, lm->bend));
+#pragma omp parallel for schedule(static)
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    PetscReal rho, first, second;
+    const PetscReal log_rate = lm->rate[c] / lm->now.image[c],
+                    log_bend = lm->bend[c] / lm->now.image[c] - log_rate * log_rate;
+    EqmLmResidual((PetscBool)(lm->epsilon > 0.), PetscLogReal(lm->now.image[c] / mesh->weight[c]) - lm->level, &rho,
+                  &first, &second);
+    lm->rate[c] = first * log_rate;
+    lm->bend[c] = first * log_bend + second * log_rate * log_rate;
+  }
+  if (!(lm->epsilon > 0.)) PetscCall(EqmLmRemoveMean(mesh, lm->bend));
+  PetscCall(PullBack(solver, lm->bend, PETSC_FALSE, lm->curve));
+  PetscCall(VecGetArray(lm->curve, &array));
+  PetscCall(EqmLinearSolve(lm->linear, 1, array, array));
+  PetscCall(VecRestoreArray(lm->curve, &array));
+  PetscCall(AddMeanTerm(lm, lm->curve));
+  PetscCall(VecScale(lm->curve, -.5));
+  PetscCall(EqmDomainExpand(solver->domain, &lm->now.place, lm->curve, lm->acceleration));
+  PetscCall(Norm(mesh, 2 * mesh->num_owned, lm->velocity, &step_norm));
+  PetscCall(Norm(mesh, 2 * mesh->num_owned, lm->acceleration, &curve_norm));
+  *ratio = step_norm > 0. ? curve_norm / step_norm : 0.;
+  PetscFunctionReturn(0);
+}
+
+/* What the linear model promises for the full step. Leaves rate and bend used up. */
+PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease)
+{
+  EqmLm *const lm = solver->data;
+  const EqmMesh mesh = solver->mesh;
+  PetscReal squares;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) lm->rate[c] += lm->now.residual[c];
+  if (!(lm->epsilon > 0.)) PetscCall(EqmLmRemoveMean(mesh, lm->rate));
+  PetscCall(EqmLmWeightedSum(mesh, lm->rate, 2, &squares));
+  *decrease = lm->now.squares - squares;
+  if (lm->epsilon > 0.) {
+    PetscReal quadratic, linear, local = 0.;
+    PetscReal *pull, *gradient;
+    PetscCall(EqmLmAngleEnergy(solver, lm->velocity, &quadratic));
+    PetscCall(PetscMalloc2(2 * mesh->num_owned, &pull, 2 * mesh->num_owned, &gradient));
+    for (PetscInt c = 0; c < mesh->num_local_cells; c++) lm->bend[c] = 1.;
+    PetscCall(EqmImageGradient(solver->domain, &lm->now.place, lm->bend, gradient));
+    PetscCall(EqmLaplacianApply(mesh, lm->laplacian, 2, lm->now.place.x, pull));
+    for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) local += (pull[k] - gradient[k]) * lm->velocity[k];
+    PetscCall(PetscFree2(pull, gradient));
+    PetscCall(MPIU_Allreduce(&local, &linear, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+    *decrease -= lm->angle_weight * (linear + quadratic);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Slopes d rho / d a and minus half the gradient of the objective at the present map. Collective. */
+PetscErrorCode EqmLmGradient(EqmSolver solver)
+{
+  EqmLm *const lm = solver->data;
+  const EqmMesh mesh = solver->mesh;
+  PetscReal norm;
+
+  PetscFunctionBegin;
+#pragma omp parallel for schedule(static)
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    PetscReal first = 1.;
+    if (lm->epsilon > 0.) { /* only there does the slope depend on the residual */
+      PetscReal rho, second;
+      EqmLmResidual(PETSC_TRUE, PetscLogReal(lm->now.image[c] / mesh->weight[c]) - lm->level, &rho, &first, &second);
+    }
+    lm->slope[c] = first / lm->now.image[c];
+  }
+  PetscCall(PullBack(solver, lm->now.residual, PETSC_TRUE, lm->descent));
+  PetscCall(VecScale(lm->descent, -1.));
+  PetscCall(VecNorm(lm->descent, NORM_2, &norm));
+  solver->gradient_norm = 2. * norm;
+  PetscFunctionReturn(0);
+}
+
+/* Gradient and the mean's vector at the present map. Collective. */
+PetscErrorCode EqmLmLinearise(EqmSolver solver)
+{
+  EqmLm *const lm = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLmGradient(solver));
+  if (!(lm->epsilon > 0.)) PetscCall(PullBack(solver, NULL, PETSC_FALSE, lm->mean));
+  PetscFunctionReturn(0);
+}
+
+/* Factor the matrix at the present map with the present damping. Collective. */
+PetscErrorCode EqmLmFactor(EqmSolver solver, PetscBool *success)
+{
+  EqmLm *const lm = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLinearFactor(lm->linear, CellMatrix, solver, 1. + (lm->epsilon > 0. ? 1e-11 : 1e-12), success));
+  PetscFunctionReturn(0);
+}
+
+/* q <- H^-1 q with the present factor, the mean's term included; `context` is the solver. lm->mean must be the factor's
+   Collective. */
+PetscErrorCode EqmLmApplyInverse(void *context, Vec q)
+{
+  const EqmSolver solver = context;
+  EqmLm *const lm = solver->data;
+  PetscScalar *array;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArray(q, &array));
+  PetscCall(EqmLinearSolve(lm->linear, 1, array, array));
+  PetscCall(VecRestoreArray(q, &array));
+  PetscCall(AddMeanTerm(lm, q));
+  PetscFunctionReturn(0);
+}

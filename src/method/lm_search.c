@@ -1,0 +1,110 @@
+/* The search along the curve, and the quasi-Newton steps that get more out of a factor. */
+#include "method/lm.h"
+
+enum { MOST_HALVINGS = 7, MOST_INNER = 100, INNER_WINDOW = 5 };
+/* A factorisation costs about as much as so many quasi-Newton steps. */
+static const PetscReal factor_cost = 25.;
+
+void EqmLmSwap(EqmTrial *a, EqmTrial *b)
+{
+  const EqmTrial t = *a;
+  *a = *b;
+  *b = t;
+}
+
+/* Look at the map at parameter t, with or without the bend; keep it if it is the best so far. */
+static PetscErrorCode TryAt(EqmSolver solver, PetscReal t, PetscBool bent, PetscReal *best_t, PetscReal *objective)
+{
+  EqmLm *const lm = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(VecCopy(lm->step, lm->move));
+  PetscCall(VecScale(lm->move, t));
+  if (bent) PetscCall(VecAXPY(lm->move, t * t, lm->curve));
+  PetscCall(EqmDomainMove(solver->domain, &lm->now.place, 1., lm->move, &lm->attempt.place));
+  PetscCall(EqmLmEvaluate(solver, &lm->attempt));
+  *objective = lm->attempt.objective;
+  if (lm->attempt.objective < (*best_t > 0. ? lm->best.objective : lm->now.objective)) {
+    *best_t = t;
+    EqmLmSwap(&lm->attempt, &lm->best);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Halve t until a trial is worse than the best or the decrease is a fair share of the prediction; `best_t` 0 if nothing
+   decreases the objective. */
+PetscErrorCode EqmLmSearch(EqmSolver solver, PetscReal ratio, PetscReal predicted, PetscReal *best_t)
+{
+  EqmLm *const lm = solver->data;
+  const PetscReal share = lm->epsilon > 0. ? .1 : .3;
+  PetscReal t = ratio < 1. ? 1. : 1. / ratio, objective;
+
+  PetscFunctionBegin;
+  *best_t = 0.;
+  for (PetscInt halving = 0; halving < MOST_HALVINGS; halving++, t *= .5) {
+    PetscCall(TryAt(solver, t, PETSC_TRUE, best_t, &objective));
+    if (ratio >= 1. || halving >= 2 || lm->epsilon > 0.) PetscCall(TryAt(solver, t, PETSC_FALSE, best_t, &objective));
+    if (*best_t > 0. &&
+        (objective > lm->best.objective || lm->best.objective < lm->now.objective - share * t * predicted))
+      break;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Armijo search along lm->direction from t on, leaving the map in lm->attempt; `t` is 0 if nothing decreases enough. */
+static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t)
+{
+  EqmLm *const lm = solver->data;
+
+  PetscFunctionBegin;
+  for (PetscInt trial = 0; trial < MOST_HALVINGS; trial++) {
+    PetscCall(EqmDomainMove(solver->domain, &lm->now.place, *t, lm->direction, &lm->attempt.place));
+    PetscCall(EqmLmEvaluate(solver, &lm->attempt));
+    const PetscReal change = lm->attempt.objective - lm->now.objective;
+    if (change < 1e-4 * *t * slope) PetscFunctionReturn(0);
+    if (PetscIsInfOrNanReal(change))
+      *t *= .5; /* folds: no parabola */
+    else
+      *t = PetscMax(.1 * *t, PetscMin(.5 * *t, -.5 * *t * *t * slope / (change - *t * slope)));
+  }
+  *t = 0.;
+  PetscFunctionReturn(0);
+}
+
+/* Is another step on this factor worth less than a new factor? The marginal value theorem with costs in steps: leave
+   when the recent decrease of log(objective) per step is below the average per cost since the factorisation. */
+static PetscBool IsUsedUp(PetscInt steps, const PetscReal *objective, PetscReal before)
+{
+  const PetscInt window = PetscMin(steps, INNER_WINDOW);
+  const PetscReal recent = PetscLogReal(objective[steps - window] / objective[steps]) / window;
+
+  return (PetscBool)(steps >= 3 && recent < PetscLogReal(before / objective[steps]) / (factor_cost + steps));
+}
+
+/* Quasi-Newton steps (L-BFGS) with the present factor as the initial inverse Hessian: a solve is some twenty times
+   cheaper than a factorisation. The frames of the domain carry gradients from one map to the next. Collective. */
+PetscErrorCode EqmLmInnerSteps(EqmSolver solver)
+{
+  EqmLm *const lm = solver->data;
+  PetscReal objective[MOST_INNER + 1], t = .25, slope;
+
+  PetscFunctionBegin;
+  objective[0] = lm->now.objective;
+  PetscCall(EqmPairsForget(lm->pairs));
+  PetscCall(EqmLmGradient(solver)); /* lm->mean stays the factor's */
+  for (PetscInt k = 0; k < MOST_INNER && (k == 0 || !IsUsedUp(k, objective, solver->objective)); k++) {
+    PetscCall(VecCopy(lm->descent, lm->direction));
+    PetscCall(EqmPairsDirection(lm->pairs, EqmLmApplyInverse, solver, lm->direction));
+    PetscCall(VecDot(lm->descent, lm->direction, &slope));
+    t = PetscMin(1., 4. * t);
+    if (slope > 0.) PetscCall(Backtrack(solver, -2. * slope, &t));
+    if (!(slope > 0.) || t == 0.) break;
+    EqmLmSwap(&lm->now, &lm->attempt);
+    PetscCall(VecCopy(lm->descent, lm->old_descent));
+    PetscCall(EqmLmGradient(solver));
+    PetscCall(
+        EqmPairsAdd(lm->pairs, t, lm->direction, lm->descent, lm->old_descent)); /* descent is minus the gradient */
+    objective[k + 1] = lm->now.objective;
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,87 @@
+#include "method/pairs.h"
+
+struct _p_EqmPairs {
+  PetscInt most, count, oldest; /* a ring: pair k, from the oldest, is at (oldest + k) % most */
+  Vec *step, *change;
+  PetscReal *curvature; /* s.y */
+};
+
+/* Room for `most` pairs of vectors like `like`. Collective. */
+PetscErrorCode EqmPairsCreate(Vec like, PetscInt most, EqmPairs *out)
+{
+  EqmPairs pairs;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&pairs));
+  pairs->most = most;
+  PetscCall(VecDuplicateVecs(like, most, &pairs->step));
+  PetscCall(VecDuplicateVecs(like, most, &pairs->change));
+  PetscCall(PetscMalloc1(most, &pairs->curvature));
+  *out = pairs;
+  PetscFunctionReturn(0);
+}
+
+/* Collective. */
+PetscErrorCode EqmPairsDestroy(EqmPairs *pairs)
+{
+  PetscFunctionBegin;
+  if (!*pairs) PetscFunctionReturn(0);
+  PetscCall(VecDestroyVecs((*pairs)->most, &(*pairs)->step));
+  PetscCall(VecDestroyVecs((*pairs)->most, &(*pairs)->change));
+  PetscCall(PetscFree((*pairs)->curvature));
+  PetscCall(PetscFree(*pairs));
+  PetscFunctionReturn(0);
+}
+
+/* Not collective. */
+PetscErrorCode EqmPairsForget(EqmPairs pairs)
+{
+  PetscFunctionBegin;
+  pairs->count = pairs->oldest = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Remember the step scale * step and the change of the gradient over it, unless its curvature is not positive.
+ * Collective. */
+PetscErrorCode EqmPairsAdd(EqmPairs pairs, PetscReal scale, Vec step, Vec old_gradient, Vec new_gradient)
+{
+  const PetscInt place = (pairs->oldest + pairs->count) % pairs->most;
+  PetscReal curvature;
+
+  PetscFunctionBegin;
+  PetscCall(VecCopy(step, pairs->step[place]));
+  PetscCall(VecScale(pairs->step[place], scale));
+  PetscCall(VecWAXPY(pairs->change[place], -1., old_gradient, new_gradient));
+  PetscCall(VecDot(pairs->step[place], pairs->change[place], &curvature));
+  if (pairs->count == pairs->most) { /* the oldest pair is overwritten, whatever comes of the new one */
+    pairs->oldest = (pairs->oldest + 1) % pairs->most;
+    pairs->count--;
+  }
+  if (!(curvature > 0.)) PetscFunctionReturn(0);
+  pairs->curvature[place] = curvature;
+  pairs->count++;
+  PetscFunctionReturn(0);
+}
+
+/* The two-loop recursion (Nocedal and Wright, Algorithm 7.4): q <- H q. Collective. */
+PetscErrorCode EqmPairsDirection(EqmPairs pairs, EqmApplyInverse apply, void *context, Vec q)
+{
+  PetscReal *alpha, product;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(pairs->most, &alpha));
+  for (PetscInt k = pairs->count - 1; k >= 0; k--) {
+    const PetscInt place = (pairs->oldest + k) % pairs->most;
+    PetscCall(VecDot(pairs->step[place], q, &product));
+    alpha[k] = product / pairs->curvature[place];
+    PetscCall(VecAXPY(q, -alpha[k], pairs->change[place]));
+  }
+  PetscCall(apply(context, q));
+  for (PetscInt k = 0; k < pairs->count; k++) {
+    const PetscInt place = (pairs->oldest + k) % pairs->most;
+    PetscCall(VecDot(pairs->change[place], q, &product));
+    PetscCall(VecAXPY(q, alpha[k] - product / pairs->curvature[place], pairs->step[place]));
+  }
+  PetscCall(PetscFree(alpha));
+  PetscFunctionReturn(0);
+}
