@@ -1,0 +1,245 @@
+/* Assembly and linear solvers: residuals of several right-hand sides, what happens to matrices that are not definite.
+ */
+#include "support/testing.h"
+
+enum { MOST_RHS = 4 };
+
+/* A symmetric matrix made of cells, the same on every rank: diag(shift) + q q^T with q from the numbers of the
+ * unknowns. */
+typedef struct {
+  EqmMesh mesh;
+  EqmUnknowns unknowns;
+  PetscReal shift, spoil; /* spoil: taken off the diagonal of the first unknown's cells */
+} Model;
+
+static PetscReal Pull(PetscInt unknown)
+{
+  return PetscSinReal(1. + 3. * unknown);
+}
+
+static void ModelCell(void *context, PetscInt cell, PetscReal *matrix)
+{
+  const Model *const model = context;
+  PetscInt list[EQM_MOST_CELL_UNKNOWNS], n = 0;
+
+  for (PetscInt a = 0; a < 3; a++) {
+    const PetscInt v = model->mesh->cells[3 * cell + a];
+    for (PetscInt k = 0; k < model->unknowns.count[v]; k++) list[n++] = model->unknowns.start[v] + k;
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt j = 0; j < n; j++) matrix[n * i + j] = Pull(list[i]) * Pull(list[j]) + (i == j ? model->shift : 0.);
+    if (list[i] == 0) matrix[n * i + i] -= model->spoil;
+  }
+}
+
+/* y = A x cell by cell, without a matrix; x and y per owned unknown. The diagonal is multiplied by `diagonal`. */
+static PetscErrorCode ModelApply(Model *model, PetscReal diagonal, const PetscReal *x, PetscReal *y)
+{
+  const EqmMesh mesh = model->mesh;
+  const EqmUnknowns *const u = &model->unknowns;
+  PetscReal *by_vertex, matrix[EQM_MOST_CELL_UNKNOWNS * EQM_MOST_CELL_UNKNOWNS];
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(2 * mesh->num_local, &by_vertex));
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    for (PetscInt k = 0; k < u->count[v]; k++) by_vertex[2 * v + k] = x[u->start[v] - u->first + k];
+  }
+  PetscCall(EqmMeshUpdateGhosts(mesh, 2, by_vertex));
+  PetscCall(PetscArrayzero(y, u->num_owned));
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    PetscInt row[6], n = 0;
+    PetscReal value[6];
+    for (PetscInt a = 0; a < 3; a++) {
+      const PetscInt v = mesh->cells[3 * c + a];
+      for (PetscInt k = 0; k < u->count[v]; k++) {
+        value[n] = by_vertex[2 * v + k];
+        row[n++] = u->start[v] + k - u->first;
+      }
+    }
+    ModelCell(model, c, matrix);
+    for (PetscInt i = 0; i < n; i++) {
+      for (PetscInt j = 0; j < n && row[i] >= 0 && row[i] < u->num_owned; j++)
+        y[row[i]] += (i == j ? diagonal : 1.) * matrix[n * i + j] * value[j];
+    }
+  }
+  PetscCall(PetscFree(by_vertex));
+  PetscFunctionReturn(0);
+}
+
+static PetscReal Entry(PetscInt unknown, PetscInt column)
+{
+  return TestRandom(11, unknown, column);
+}
+
+/* |A x - b| <= tolerance |b|. */
+static PetscErrorCode CheckResidual(Model *model, PetscReal diagonal, const PetscReal *b, const PetscReal *x,
+                                    PetscReal tolerance)
+{
+  const PetscInt n = model->unknowns.num_owned;
+  PetscReal *y, local[2] = {0., 0.};
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &y));
+  PetscCall(ModelApply(model, diagonal, x, y));
+  for (PetscInt i = 0; i < n; i++) {
+    local[0] += PetscSqr(y[i] - b[i]);
+    local[1] += PetscSqr(b[i]);
+  }
+  CHECK_CLOSE(PetscSqrtReal(TestSum(PETSC_COMM_WORLD, local[0])), 0., tolerance,
+              PetscSqrtReal(TestSum(PETSC_COMM_WORLD, local[1])));
+  PetscCall(PetscFree(y));
+  PetscFunctionReturn(0);
+}
+
+/* Factor and solve. `in_place`: solutions over right-hand sides. */
+static PetscErrorCode CheckSolve(EqmLinear linear, Model *model, PetscReal diagonal, PetscInt num_rhs,
+                                 PetscBool in_place, PetscReal tolerance)
+{
+  const PetscInt n = model->unknowns.num_owned;
+  PetscReal *b, *x;
+  PetscBool success = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(MOST_RHS * n, &b, MOST_RHS * n, &x));
+  PetscCall(EqmLinearFactor(linear, ModelCell, model, diagonal, &success));
+  CHECK(success, "a definite matrix is refused");
+  for (PetscInt k = 0; k < num_rhs; k++) {
+    for (PetscInt i = 0; i < n; i++) b[k * n + i] = x[k * n + i] = Entry(model->unknowns.first + i, k);
+  }
+  PetscCall(EqmLinearSolve(linear, num_rhs, in_place ? x : b, x));
+  for (PetscInt k = 0; k < num_rhs; k++) PetscCall(CheckResidual(model, diagonal, b + k * n, x + k * n, tolerance));
+  PetscCall(PetscFree2(b, x));
+  PetscFunctionReturn(0);
+}
+
+/* A matrix that is not definite is reported as such on every rank; a good one works again after it. */
+static PetscErrorCode CheckIndefinite(EqmLinear linear, Model *model)
+{
+  PetscBool success = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  model->spoil = 1e3;
+  PetscCall(EqmLinearFactor(linear, ModelCell, model, 1., &success));
+  CHECK(!success, "an indefinite matrix passes for definite");
+  model->spoil = 0.;
+  PetscCall(CheckSolve(linear, model, 1., 2, PETSC_FALSE, 1e-12));
+  PetscFunctionReturn(0);
+}
+
+/* Multigrid cannot see it before the iteration: a true solution or an error, never numbers that solve nothing. */
+static PetscErrorCode CheckIndefiniteMultigrid(EqmLinear linear, Model *model)
+{
+  const PetscInt n = model->unknowns.num_owned;
+  PetscErrorCode error = 0;
+  PetscReal *b, *x;
+  PetscBool success;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(n, &b, n, &x));
+  for (PetscInt i = 0; i < n; i++) b[i] = Entry(model->unknowns.first + i, 0);
+  model->spoil = 1e3;
+  PetscCall(EqmLinearFactor(linear, ModelCell, model, 1., &success));
+  if (success) {
+    PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+    error = EqmLinearSolve(linear, 1, b, x);
+    PetscCall(PetscPopErrorHandler());
+    if (!error) PetscCall(CheckResidual(model, 1., b, x, 1e-8));
+  }
+  model->spoil = 0.;
+  PetscCall(PetscFree2(b, x));
+  PetscFunctionReturn(0);
+}
+
+/* One kind of solver on one set of unknowns. */
+static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled,
+                                 const char *option)
+{
+  Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5};
+  EqmWork *work, before;
+  PetscOptions options;
+  EqmLinear linear;
+
+  PetscFunctionBegin;
+  PetscCall(TestOptionsBegin(option, &options));
+  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, coupled, &linear));
+  const PetscBool direct = (PetscBool)(linear->kind != EQM_SOLVER_MULTIGRID);
+  const PetscReal tolerance = direct ? 1e-12 : 1e-9;
+  PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
+  before = *work;
+  PetscCall(CheckSolve(linear, &model, 1., 3, PETSC_FALSE, tolerance));
+  PetscCall(CheckSolve(linear, &model, 1., 1, PETSC_TRUE, tolerance));
+  model.shift = .8; /* new values, same pattern */
+  PetscCall(CheckSolve(linear, &model, 1., MOST_RHS, PETSC_TRUE, tolerance));
+  PetscCall(CheckSolve(linear, &model, 1.5, 2, PETSC_FALSE, tolerance));
+  CHECK(work->factorizations - before.factorizations == 4 && work->solves - before.solves == 10,
+        "%d factorisations, %d solves", (int)(work->factorizations - before.factorizations),
+        (int)(work->solves - before.solves));
+  CHECK(work->coupled_factorizations - before.coupled_factorizations == (coupled ? 4 : 0), "%d coupled",
+        (int)(work->coupled_factorizations - before.coupled_factorizations));
+  if (direct)
+    PetscCall(CheckIndefinite(linear, &model));
+  else
+    PetscCall(CheckIndefiniteMultigrid(linear, &model));
+  PetscCall(EqmLinearDestroy(&linear));
+  PetscCall(TestOptionsEnd(&options));
+  PetscFunctionReturn(0);
+}
+
+/* CHOLMOD on several ranks is the user's mistake, and said so. */
+static PetscErrorCode TestCholmodOnSeveralRanks(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns)
+{
+  PetscOptions options;
+  EqmLinear linear;
+
+  PetscFunctionBegin;
+  PetscCall(TestOptionsBegin("-linear_solver cholmod", &options));
+  CHECK_FAILS(EQM_ERR_USAGE, EqmLinearCreate(mesh, ordering, unknowns, PETSC_FALSE, &linear));
+  PetscCall(TestOptionsEnd(&options));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, PetscBool coupled)
+{
+  EqmOrdering ordering;
+
+  PetscFunctionBegin;
+  PetscCall(EqmOrderingCreate(mesh, &ordering));
+  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver auto"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver mumps"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver multigrid"));
+  if (mesh->size == 1)
+    PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver cholmod"));
+  else
+    PetscCall(TestCholmodOnSeveralRanks(mesh, ordering, unknowns));
+  PetscCall(EqmOrderingDestroy(&ordering));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  TestMesh test;
+  EqmDomain domain;
+  unsigned char *ones;
+
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 900, 2, &test));
+  PetscCall(PetscMalloc1(test.mesh->num_local, &ones));
+  for (PetscInt v = 0; v < test.mesh->num_local; v++) ones[v] = 1;
+  const EqmUnknowns scalar = {.num_owned = test.mesh->num_owned,
+                              .first = test.mesh->vertex_start,
+                              .start = test.mesh->global,
+                              .count = ones};
+  PetscCall(TestUnknowns(test.mesh, &scalar, PETSC_FALSE));
+  PetscCall(EqmDomainCreateSquare(test.mesh, NULL, &domain)); /* two, one and no unknowns at a vertex */
+  const EqmUnknowns coupled = {.num_owned = domain->num_dofs,
+                               .first = domain->dof_first,
+                               .start = domain->dof_start,
+                               .count = domain->dof_count};
+  PetscCall(TestUnknowns(test.mesh, &coupled, PETSC_TRUE));
+  PetscCall(EqmDomainDestroy(&domain));
+  PetscCall(PetscFree(ones));
+  PetscCall(TestMeshDestroy(&test));
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(0);
+}
