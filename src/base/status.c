@@ -1,6 +1,6 @@
 /* Status codes, the error handler of the house, agreement on failures. */
 #include <equimap/base.h>
-#include <stdarg.h>
+#include <signal.h>
 #include <string.h>
 
 #ifndef EQM_VERSION
@@ -98,6 +98,7 @@ PetscErrorCode EqmInitialize(int *argc, char ***argv)
   PetscFunctionBegin;
   PetscCall(PetscInitialize(argc, argv, NULL, NULL));
   PetscCall(PetscPushErrorHandler(HandleError, NULL));
+  signal(SIGXFSZ, SIG_IGN); /* a file size limit is a write that fails, with a message, not a death */
   PetscFunctionReturn(0);
 }
 

@@ -70,9 +70,11 @@ PetscErrorCode EqmMeshFindBoundary(EqmMesh mesh)
     }
   }
   PetscCall(PetscMalloc1(fs * count, &mesh->boundary_facets));
+  PetscCall(PetscMalloc1(count, &mesh->boundary_order));
   mesh->num_boundary_facets = count;
   for (PetscInt k = 0; k < count; k++) {
     const PetscInt *const corner = FacetCorners(cs, kept[k] % cs);
+    mesh->boundary_order[k] = (PetscInt64)((kept[k] % cs + 1) % cs) * mesh->num_cells + mesh->cell_input[kept[k] / cs];
     for (PetscInt a = 0; a < fs; a++) {
       const PetscInt v = mesh->cells[cs * (kept[k] / cs) + corner[a]];
       mesh->boundary_facets[fs * k + a] = v;
@@ -90,9 +92,10 @@ PetscErrorCode EqmMeshFindBoundary(EqmMesh mesh)
   PetscFunctionReturn(0);
 }
 
-/* One boundary edge as it travels: tail, head (global numbers), input number of the tail. */
+/* One boundary edge as it travels: tail and head (global numbers), place in the file. */
 typedef struct {
-  PetscInt tail, head, input;
+  PetscInt tail, head;
+  PetscInt64 order;
   PetscReal length;
 } LoopEdge;
 
@@ -113,7 +116,7 @@ static PetscErrorCode WalkLoop(PetscInt n, const LoopEdge *edge, PetscInt *place
   for (PetscInt e = 0; e < n; e++) {
     tail[e] = edge[e].tail;
     place[e] = -1;
-    if (edge[e].input < edge[first].input) first = e;
+    if (edge[e].order < edge[first].order) first = e;
   }
   current = first;
   for (PetscInt k = 0; k < n && current >= 0 && place[current] < 0; k++) {
@@ -203,7 +206,7 @@ PetscErrorCode EqmMeshBoundaryLoop(EqmMesh mesh, PetscInt *place, PetscReal *arc
     if (i >= mesh->num_owned) continue;
     edge[n].tail = mesh->global[i];
     edge[n].head = mesh->global[j];
-    edge[n].input = mesh->vertex_input[i];
+    edge[n].order = mesh->boundary_order[e];
     edge[n++].length = PetscSqrtReal(PetscSqr(p[0] - q[0]) + PetscSqr(p[1] - q[1]) + PetscSqr(p[2] - q[2]));
   }
   PetscCall(OrderLoopOnRoot(mesh, n, edge, edge_place, edge_arc));

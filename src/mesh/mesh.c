@@ -180,10 +180,10 @@ static PetscErrorCode TakeStars(EqmMesh mesh, EqmSoup soup, const EqmStars *star
   PetscCall(PetscFree(ghosts));
   PetscCall(SortCells(mesh, stars, cells, order));
   PetscCall(PetscMalloc1(cs * mesh->num_local_cells, &mesh->cells));
-  PetscCall(PetscMalloc1(mesh->num_owned_cells, &mesh->cell_input));
+  PetscCall(PetscMalloc1(mesh->num_local_cells, &mesh->cell_input));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
     for (PetscInt a = 0; a < cs; a++) mesh->cells[cs * c + a] = cells[cs * order[c] + a];
-    if (c < mesh->num_owned_cells) mesh->cell_input[c] = stars->records[stars->width * order[c]];
+    mesh->cell_input[c] = stars->records[stars->width * order[c]];
   }
   PetscCall(CellDensities(soup, stars, order, density));
   PetscCall(PetscFree2(cells, order));
@@ -234,6 +234,7 @@ PetscErrorCode EqmMeshDestroy(EqmMesh *mesh)
   PetscCall(PetscFree((*mesh)->shape));
   PetscCall(PetscFree((*mesh)->on_boundary));
   PetscCall(PetscFree((*mesh)->boundary_facets));
+  PetscCall(PetscFree((*mesh)->boundary_order));
   PetscCall(PetscFree((*mesh)->block_vertex));
   PetscCall(PetscFree((*mesh)->block_start));
   PetscCall(PetscFree((*mesh)->block_cell));
