@@ -17,7 +17,7 @@ typedef struct {
   const char *name, *purpose;
   const char *default_start; /* unless -start says otherwise */
   PetscInt default_max_it;
-  PetscReal default_energy_rtol;
+  PetscReal default_energy_rtol, default_ratio_tol;
   PetscErrorCode (*options)(EqmSolver, PetscOptionItems *); /* may be NULL */
   PetscErrorCode (*set_up)(EqmSolver);                      /* solver->place holds the start */
   PetscErrorCode (*step)(EqmSolver, EqmStep *); /* leaves place, image, step_length, gradient_norm, objective */
@@ -27,7 +27,7 @@ typedef struct {
 typedef struct {
   char method[32], start[32];
   PetscInt max_it, max_factorizations, start_steps;
-  PetscReal energy_rtol, energy_target, gradient_tol, wall_time, balance;
+  PetscReal energy_rtol, ratio_tol, energy_target, gradient_tol, wall_time, balance;
   PetscInt stagnation; /* iterations over which energy_rtol is looked at */
   PetscBool quiet, has_corners;
   PetscInt corners[4];

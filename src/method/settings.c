@@ -8,7 +8,7 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
   *settings = (EqmSettings){.method = "auto",
                             .max_it = -1,
                             .start_steps = -1,
-                            .energy_rtol = -1.,
+                            .energy_rtol = -1., .ratio_tol = -1.,
                             .gradient_tol = 1e-14,
                             .balance = -1.,
                             .stagnation = 5,
@@ -54,6 +54,10 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
                              "converged when the objective falls by less than this share per iteration, over some "
                              "iterations (-1: the method's own, 0: never)",
                              "EqmSolverSetFromOptions", set->energy_rtol, &set->energy_rtol, NULL));
+  PetscCall(PetscOptionsReal("-ratio_tol",
+                             "converged when the root mean square of ratio - 1 is no larger than this (-1: the method's own, "
+                             "none with -energy_rtol 0; 0: never)",
+                             "EqmSolverSetFromOptions", set->ratio_tol, &set->ratio_tol, NULL));
   PetscCall(PetscOptionsReal("-energy_target", "converged when the energy is no larger than this (0: off)",
                              "EqmSolverSetFromOptions", set->energy_target, &set->energy_target, NULL));
   PetscCall(PetscOptionsReal("-gradient_tol", "converged when the gradient's norm is no larger than this",
@@ -90,6 +94,7 @@ PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver)
   if (!set->start[0]) PetscCall(PetscStrncpy(set->start, solver->method->default_start, sizeof(set->start)));
   PetscCall(EqmStartFind(set->start));
   if (set->max_it < 0) set->max_it = solver->method->default_max_it;
+  if (set->ratio_tol < 0.) set->ratio_tol = set->energy_rtol == 0. ? 0. : solver->method->default_ratio_tol;
   if (set->energy_rtol < 0.) set->energy_rtol = solver->method->default_energy_rtol;
   PetscFunctionReturn(0);
 }

@@ -72,7 +72,7 @@ static PetscBool Stagnates(EqmSolver solver)
 
   if (last < span) return PETSC_FALSE;
   const PetscReal then = solver->objectives[last - span], now = solver->objectives[last];
-  return (PetscBool)(then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
+  return (PetscBool)(solver->settings.energy_rtol > 0. && then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
 }
 
 /* Is there reason to stop? Says which in status and message. The clock is rank 0's, so that all ranks agree. */
@@ -90,6 +90,8 @@ static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
   if (set->energy_target > 0. && solver->totals.energy <= set->energy_target) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %g",
                             (double)set->energy_target));
+  } else if (set->ratio_tol > 0. && solver->totals.energy <= PetscSqr(set->ratio_tol) * solver->totals.total) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the ratios are within %g of one, root mean square", (double)set->ratio_tol));
   } else if (solver->gradient_norm >= 0. && solver->gradient_norm <= set->gradient_tol) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the gradient's norm is below %g",
                             (double)set->gradient_tol));
