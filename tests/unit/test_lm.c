@@ -1,0 +1,257 @@
+/* Levenberg-Marquardt's parts: gradient, Gauss-Newton matrix with metric and mean term, bend of the geodesic, each
+   against differences of the residual itself. */
+#include "support/testing.h"
+#include "method/lm.h"
+
+/* A solver at its start, its method set up. */
+static PetscErrorCode Begin(EqmMesh mesh, const char *target, PetscReal balance, EqmSolver *solver)
+{
+  char options[128];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(options, sizeof(options), "-method lm -start guarded -start_steps 1 -max_it 0 -balance %g",
+                          (double)balance));
+  PetscCall(TestSolve(mesh, target, options, solver));
+  PetscCall((*solver)->method->set_up(*solver));
+  PetscCall(EqmLmLinearise(*solver));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode End(EqmSolver *solver)
+{
+  PetscFunctionBegin;
+  PetscCall((*solver)->method->destroy(*solver));
+  PetscCall(EqmSolverDestroy(solver));
+  PetscFunctionReturn(0);
+}
+
+/* Objective and residuals at parameter t of the geodesic of `step`; the result lies in lm->attempt. */
+static PetscErrorCode At(EqmSolver solver, Vec step, PetscReal t)
+{
+  EqmLm *const lm = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmDomainMove(solver->domain, &lm->now.place, t, step, &lm->attempt.place));
+  PetscCall(EqmLmEvaluate(solver, &lm->attempt));
+  CHECK(!PetscIsInfOrNanReal(lm->attempt.objective), "a tiny step folds the map");
+  PetscFunctionReturn(0);
+}
+
+/* Residuals at -2h, -h, 0, h, 2h along `step`, one after the other, per local cell; objectives too. */
+static PetscErrorCode Sample(EqmSolver solver, Vec step, PetscReal h, PetscReal *residual, PetscReal objective[5])
+{
+  EqmLm *const lm = solver->data;
+  const PetscInt m = solver->mesh->num_local_cells;
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 5; k++) {
+    PetscCall(At(solver, step, (k - 2) * h));
+    PetscCall(PetscArraycpy(residual + k * m, lm->attempt.residual, m));
+    objective[k] = lm->attempt.objective;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscReal FirstDifference(PetscInt m, const PetscReal *f, PetscReal h)
+{
+  return (8. * (f[3 * m] - f[m]) - (f[4 * m] - f[0])) / (12. * h);
+}
+
+static PetscReal SecondDifference(PetscInt m, const PetscReal *f, PetscReal h)
+{
+  return (16. * (f[3 * m] + f[m]) - (f[4 * m] + f[0]) - 30. * f[2 * m]) / (12. * h * h);
+}
+
+/* A step that moves no vertex farther than a part of the shortest image edge: b scaled. */
+static PetscErrorCode ScaleToMesh(EqmSolver solver, Vec step)
+{
+  const EqmMesh mesh = solver->mesh;
+  const PetscReal *const x = solver->place.x;
+  PetscReal shortest = -PETSC_MAX_REAL, largest;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 3 * mesh->num_local_cells; k++) {
+    const PetscInt i = mesh->cells[k], j = mesh->cells[k - k % 3 + (k + 1) % 3];
+    shortest =
+        PetscMax(shortest, -PetscSqrtReal(PetscSqr(x[2 * i] - x[2 * j]) + PetscSqr(x[2 * i + 1] - x[2 * j + 1])));
+  }
+  PetscCall(VecNorm(step, NORM_INFINITY, &largest));
+  PetscCall(VecScale(step, .1 * -TestMax(mesh->comm, shortest) / largest));
+  PetscFunctionReturn(0);
+}
+
+/* lm->descent is minus half the gradient of what EqmLmEvaluate computes. */
+static PetscErrorCode TestGradient(EqmSolver solver)
+{
+  EqmLm *const lm = solver->data;
+  PetscReal *residual, objective[5], product, norm[2];
+  Vec step;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(5 * solver->mesh->num_local_cells, &residual));
+  PetscCall(VecDuplicate(lm->descent, &step));
+  for (PetscInt seed = 0; seed < 3; seed++) {
+    PetscCall(TestRandomStep(solver->domain, seed, 1., step));
+    if (seed == 2) PetscCall(VecCopy(lm->descent, step));
+    PetscCall(ScaleToMesh(solver, step));
+    PetscCall(Sample(solver, step, 1e-2, residual, objective));
+    PetscCall(VecDot(lm->descent, step, &product));
+    PetscCall(VecNorm(lm->descent, NORM_2, &norm[0]));
+    PetscCall(VecNorm(step, NORM_2, &norm[1]));
+    CHECK_CLOSE(FirstDifference(1, objective, 1e-2), -2. * product, 1e-7, norm[0] * norm[1]);
+  }
+  CHECK_CLOSE(solver->gradient_norm, 2. * norm[0], 1e-12, norm[0]);
+  PetscCall(VecDestroy(&step));
+  PetscCall(PetscFree(residual));
+  PetscFunctionReturn(0);
+}
+
+/* mu d^T M d of METHODS 10: per cell (|r| + .3 sqrt(phi)) (sqrt(3)/2) times the squared displacement about its mean. */
+static PetscReal Metric(EqmSolver solver, const PetscReal *velocity)
+{
+  const EqmLm *const lm = solver->data;
+  const EqmMesh mesh = solver->mesh;
+  PetscReal sum = 0.;
+
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
+    const PetscInt *const v = mesh->cells + 3 * c;
+    PetscReal squared = 0.;
+    for (PetscInt k = 0; k < 2; k++) {
+      const PetscReal d[3] = {velocity[2 * v[0] + k], velocity[2 * v[1] + k], velocity[2 * v[2] + k]};
+      const PetscReal mean = (d[0] + d[1] + d[2]) / 3.;
+      squared += PetscSqr(d[0] - mean) + PetscSqr(d[1] - mean) + PetscSqr(d[2] - mean);
+    }
+    sum += (PetscAbsReal(lm->now.residual[c]) + .3 * PetscSqrtReal(lm->now.squares)) * .5 * PetscSqrtReal(3.) * squared;
+  }
+  return lm->mu * TestSum(mesh->comm, sum);
+}
+
+/* x^T H x from the definition: sum w (d rho)^2 by differences, metric, angle energy. */
+static PetscErrorCode QuadraticForm(EqmSolver solver, Vec x, PetscReal *form)
+{
+  EqmLm *const lm = solver->data;
+  const EqmMesh mesh = solver->mesh;
+  const PetscInt m = mesh->num_local_cells;
+  PetscReal *residual, *velocity, objective[5], gauss = 0., length, scale;
+  Vec step;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(5 * m, &residual, 2 * mesh->num_local, &velocity));
+  PetscCall(VecDuplicate(x, &step));
+  PetscCall(VecCopy(x, step));
+  PetscCall(ScaleToMesh(solver, step));
+  PetscCall(VecNorm(x, NORM_2, &length));
+  PetscCall(VecNorm(step, NORM_2, &scale));
+  PetscCall(Sample(solver, step, 1e-2, residual, objective));
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++)
+    gauss += mesh->weight[c] * PetscSqr(FirstDifference(m, residual + c, 1e-2));
+  PetscCall(EqmDomainExpand(solver->domain, &lm->now.place, step, velocity));
+  *form = TestSum(mesh->comm, gauss) + Metric(solver, velocity);
+  if (lm->epsilon > 0.) {
+    PetscReal angle;
+    PetscCall(EqmLmAngleEnergy(solver, velocity, &angle));
+    *form += lm->epsilon / solver->domain->target_measure * angle;
+  }
+  *form *= PetscSqr(length / scale);
+  PetscCall(VecDestroy(&step));
+  PetscCall(PetscFree2(residual, velocity));
+  PetscFunctionReturn(0);
+}
+
+/* With x = H^-1 b, x^T b must be x^T H x; with sums of right-hand sides this fixes the whole matrix. */
+static PetscErrorCode TestMatrix(EqmSolver solver)
+{
+  EqmLm *const lm = solver->data;
+  PetscReal form, product;
+  PetscBool success;
+  Vec b[3], x;
+
+  PetscFunctionBegin;
+  lm->mu = .03;
+  PetscCall(EqmLmFactor(solver, &success));
+  CHECK(success, "the matrix at the start is not definite");
+  PetscCall(EqmLmSolveForStep(solver)); /* makes the mean's term, too */
+  for (int k = 0; k < 3; k++) {
+    PetscCall(VecDuplicate(lm->descent, &b[k]));
+    if (k < 2)
+      PetscCall(TestRandomStep(solver->domain, 20 + k, 1., b[k]));
+    else
+      PetscCall(VecWAXPY(b[2], 1., b[0], b[1]));
+  }
+  PetscCall(VecDuplicate(lm->descent, &x));
+  for (int k = 0; k < 3; k++) {
+    PetscCall(VecCopy(b[k], x));
+    PetscCall(EqmLmApplyInverse(solver, x));
+    PetscCall(VecDot(x, b[k], &product));
+    PetscCall(QuadraticForm(solver, x, &form));
+    CHECK_CLOSE(form, product, 1e-6, product);
+  }
+  for (int k = 0; k < 3; k++) PetscCall(VecDestroy(&b[k]));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(0);
+}
+
+/* The bend is the residual's second derivative along the geodesic of the step. */
+static PetscErrorCode TestBend(EqmSolver solver)
+{
+  EqmLm *const lm = solver->data;
+  const EqmMesh mesh = solver->mesh;
+  const PetscInt m = mesh->num_local_cells;
+  PetscReal *residual, *bend, objective[5], ratio, length, scale, largest = 0., predicted;
+  PetscBool success;
+  Vec step;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(5 * m, &residual, m, &bend));
+  PetscCall(EqmLmFactor(solver, &success));
+  PetscCall(EqmLmSolveForStep(solver));
+  PetscCall(EqmLmSolveForCurve(solver, &ratio));
+  PetscCall(PetscArraycpy(bend, lm->bend, m)); /* evaluations use it as scratch */
+  PetscCall(EqmLmPredictedDecrease(solver, &predicted));
+  CHECK(predicted > 0., "the model promises a decrease of %g", (double)predicted);
+  PetscCall(VecDuplicate(lm->step, &step));
+  PetscCall(VecCopy(lm->step, step));
+  PetscCall(ScaleToMesh(solver, step));
+  PetscCall(VecNorm(lm->step, NORM_2, &length));
+  PetscCall(VecNorm(step, NORM_2, &scale));
+  PetscCall(Sample(solver, step, 1e-2, residual, objective));
+  for (PetscInt c = 0; c < m; c++) largest = PetscMax(largest, PetscAbsReal(bend[c]));
+  largest = TestMax(mesh->comm, largest);
+  CHECK(largest > 0. && ratio > 0., "no bend at all");
+  for (PetscInt c = 0; c < m; c++) { /* at ratio one the balanced residual has a kink: leave out what crosses it */
+    const PetscReal *const f = residual + c;
+    if (lm->epsilon > 0. && (f[0] > 0.) != (f[4 * m] > 0.)) continue;
+    CHECK_CLOSE(SecondDifference(m, f, 1e-2) * PetscSqr(length / scale), bend[c], 1e-4, largest);
+  }
+  PetscCall(VecDestroy(&step));
+  PetscCall(PetscFree2(residual, bend));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestTarget(const char *shape, const char *target, PetscReal balance)
+{
+  TestMesh test;
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 300, 1, &test));
+  PetscCall(Begin(test.mesh, target, balance, &solver));
+  PetscCall(TestGradient(solver));
+  PetscCall(TestMatrix(solver));
+  PetscCall(TestBend(solver));
+  PetscCall(End(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestTarget("hills", "disk", 0.));
+  PetscCall(TestTarget("cap", "disk", .05));
+  PetscCall(TestTarget("patch", "square", 0.));
+  PetscCall(TestTarget("hills", "square", .02));
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(0);
+}
