@@ -51,10 +51,19 @@ struct _p_EqmMap {
   PetscInt ranks, threads;
   PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS], total_seconds;
   PetscInt64 memory_max_per_rank, memory_total, num_boundary_vertices;
+  EqmMap mended;          /* where the input was mended first: the map of the mended mesh; referenced, not owned */
+  const PetscInt *parent; /* with `mended`: per cell of its soup's slab the input cell it comes from; referenced */
+  EqmRepair repair;       /* with `mended`: what was mended */
 };
 
 PETSC_EXTERN PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map);
 PETSC_EXTERN PetscErrorCode EqmMapDestroy(EqmMap *map);
+/* Bring the map of a mended mesh back onto the input that EqmSoupRepair mended: places and vertex ratios of the input's
+   vertices, per input cell the mean ratio of what became of it, weighted by `cell_weight` (per cell of the mended slab),
+   1 where it was removed. Distortion, history and work are those of the mended map. `mended` and `parent` must outlive
+   the map, which writes them into a result file. Vertices that no cell uses stay at zero. Collective. */
+PETSC_EXTERN PetscErrorCode EqmMapOntoInput(EqmMap mended, EqmSoup input, const PetscInt *parent,
+                                            const PetscReal *cell_weight, EqmMap *map);
 
 /* Write a result: every name in the comma-separated `files`, format by suffix; .h5 holds everything and gets an .xmf
    beside it. tmp -> fsync -> rename; a file that was there survives a failure. Errors: EQM_ERR_USAGE (suffix),

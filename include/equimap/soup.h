@@ -40,6 +40,8 @@ PETSC_EXTERN PetscErrorCode EqmSoupCreateFromSlabs(MPI_Comm comm, PetscInt cell_
                                                    const char *file, EqmSoup *soup);
 /* Gather on rank 0 (for formats that one rank must write); elsewhere `serial` is empty. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupGather(EqmSoup soup, EqmSerialMesh *serial);
+/* A soup of its own with the same mesh, slabs and density. Collective. */
+PETSC_EXTERN PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy);
 PETSC_EXTERN PetscErrorCode EqmSoupDestroy(EqmSoup *soup);
 PETSC_EXTERN PetscErrorCode EqmSerialMeshReset(EqmSerialMesh *serial);
 

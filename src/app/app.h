@@ -22,6 +22,20 @@ PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmSta
 PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
 
+/* The mesh that a map command works on. */
+typedef struct {
+  EqmSoup given;    /* as the file has it */
+  EqmSoup mapped;   /* mended, or `given` itself where nothing was mended */
+  PetscInt *parent; /* per cell of the slab of `mapped` the cell of `given` it comes from; NULL where they are the same */
+  EqmRepair repair; /* what was mended */
+} EqmInput;
+
+PETSC_INTERN PetscErrorCode EqmInputRead(const char *command, const char *file, const char *density, PetscBool repair,
+                                         PetscBool quiet, EqmLedger ledger, EqmInput *input);
+PETSC_INTERN PetscErrorCode EqmInputTakeMap(const EqmInput *input, EqmMesh mesh, EqmMap found, EqmMap *map);
+PETSC_INTERN PetscErrorCode EqmInputDestroy(EqmInput *input);
+PETSC_INTERN PetscErrorCode EqmPrintRepair(const EqmRepair *repair);
+
 /* Fail with EQM_ERR_USAGE if an option was given that nobody asked for. Call after all options have been read, before
    the work starts. Collective. */
 PETSC_INTERN PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line);

@@ -82,18 +82,6 @@ static PetscErrorCode PrintCounts(const CheckReport *report)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PrintRepair(const EqmRepair *repair)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
-                        "repair: %" PetscInt64_FMT " twins and %" PetscInt64_FMT
-                        " cells with a repeated vertex removed, %" PetscInt64_FMT " cells turned, %" PetscInt64_FMT
-                        " cells split with %" PetscInt64_FMT " new vertices\n",
-                        repair->duplicate_cells_removed, repair->degenerate_cells_removed, repair->cells_flipped,
-                        repair->cells_split, repair->vertices_added));
-  PetscFunctionReturn(0);
-}
-
 /* Print the lines of a text behind `indent`, or only the first one. */
 static PetscErrorCode PrintLines(const char *indent, const char *text, PetscBool first_only)
 {
@@ -275,7 +263,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
   }
   PetscCall(EqmSoupDiagnose(soup, &report.diagnosis));
   PetscCall(PrintCounts(&report));
-  if (report.repaired) PetscCall(PrintRepair(&report.repair));
+  if (report.repaired) PetscCall(EqmPrintRepair(&report.repair));
   PetscCall(PrintVerdicts(&report));
   if (options.summary[0]) PetscCall(WriteSummary(&report, options.summary));
   if (options.out[0]) PetscCall(EqmSoupWrite(soup, options.out));

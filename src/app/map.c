@@ -5,7 +5,7 @@
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
       density[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary, has_history, has_density, repair;
+  PetscBool has_output, has_summary, has_history, has_density, repair, quiet;
 } MapOptions;
 
 static PetscErrorCode AskOptions(MapOptions *options)
@@ -32,6 +32,7 @@ static PetscErrorCode AskOptions(MapOptions *options)
                             "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
                             threads, &threads, NULL));
   PetscOptionsEnd();
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &options->quiet, NULL)); /* the solver lists it */
   PetscFunctionReturn(0);
 }
 
@@ -46,28 +47,6 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOption
   }
   if (!options->has_output) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "no output named; add -o OUT.h5");
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
-  PetscFunctionReturn(0);
-}
-
-/* Read the mesh, mend it if asked, refuse it if it cannot be mapped. */
-static PetscErrorCode ReadMesh(const EqmCommandLine *line, const MapOptions *options, EqmLedger ledger, EqmSoup *soup)
-{
-  EqmDiagnosis diagnosis;
-  PetscBool fatal;
-  char text[4 * EQM_MESSAGE_MAX];
-
-  PetscFunctionBegin;
-  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_READ));
-  PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], soup));
-  if (options->has_density) PetscCall(EqmSoupReadDensity(*soup, options->density));
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
-  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DIAGNOSE));
-  PetscCall(EqmSoupDiagnose(*soup, &diagnosis));
-  PetscCall(EqmDiagnosisDescribe(&diagnosis, line->command, &fatal, text, sizeof(text)));
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));
-  if (fatal)
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_MESH, "%s cannot be mapped to the %s:\n%s", line->argument[0], line->command,
-            text);
   PetscFunctionReturn(0);
 }
 
@@ -134,41 +113,53 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
+/* From the mesh that is mapped to the map of the mesh that was given. */
+static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *options, EqmLedger ledger,
+                            const EqmInput *input, EqmStatus *status)
 {
-  MapOptions options = {0};
-  EqmLedger ledger;
-  EqmSoup soup;
   EqmMesh mesh;
   EqmSolver solver;
-  EqmMap map;
+  EqmMap found, map;
 
   PetscFunctionBegin;
-  PetscCall(AskOptions(&options));
-  if (line->help) {
-    PetscCall(EqmSolverHelp(PETSC_COMM_WORLD, line->command));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
-  PetscCall(
-      EqmSolverHelp(PETSC_COMM_WORLD, line->command)); /* asks for every option, so that the unknown ones stand out */
-  PetscCall(EqmRejectUnknownOptions(line));
-  PetscCall(CheckArguments(line, &options));
-  PetscCall(ReadMesh(line, &options, ledger, &soup));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DISTRIBUTE));
-  PetscCall(EqmMeshCreate(soup, ledger, &mesh));
+  PetscCall(EqmMeshCreate(input->mapped, ledger, &mesh));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DISTRIBUTE));
   PetscCall(EqmSolverCreate(mesh, line->command, &solver));
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmSolverSolve(solver));
-  PetscCall(EqmSolverGetMap(solver, soup, &map));
-  PetscCall(Write(&options, ledger, map));
-  PetscCall(PrintResult(&options, map));
+  PetscCall(EqmSolverGetMap(solver, input->mapped, &found));
+  PetscCall(EqmInputTakeMap(input, mesh, found, &map));
+  PetscCall(Write(options, ledger, map));
+  PetscCall(PrintResult(options, map));
   *status = map->status;
-  PetscCall(EqmMapDestroy(&map));
+  if (map != found) PetscCall(EqmMapDestroy(&map));
+  PetscCall(EqmMapDestroy(&found));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(EqmMeshDestroy(&mesh));
-  PetscCall(EqmSoupDestroy(&soup));
+  PetscFunctionReturn(0);
+}
+
+/* Run `equimap disk` or `equimap square`. Collective on PETSC_COMM_WORLD. The status is the map's. Errors:
+   EQM_ERR_USAGE, and those of EqmInputRead, EqmSolverSetFromOptions and EqmMapWrite. */
+PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
+{
+  MapOptions options = {0};
+  EqmLedger ledger;
+  EqmInput input;
+
+  PetscFunctionBegin;
+  PetscCall(AskOptions(&options));
+  /* asks for every option: with --help it lists them, without it the unknown ones stand out */
+  PetscCall(EqmSolverHelp(PETSC_COMM_WORLD, line->command));
+  if (line->help) PetscFunctionReturn(0);
+  PetscCall(EqmRejectUnknownOptions(line));
+  PetscCall(CheckArguments(line, &options));
+  PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
+  PetscCall(EqmInputRead(line->command, line->argument[0], options.has_density ? options.density : NULL, options.repair,
+                         options.quiet, ledger, &input));
+  PetscCall(Solve(line, &options, ledger, &input, status));
+  PetscCall(EqmInputDestroy(&input));
   PetscCall(EqmLedgerDestroy(&ledger));
   PetscFunctionReturn(0);
 }

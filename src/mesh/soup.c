@@ -281,6 +281,31 @@ PetscErrorCode EqmSoupGather(EqmSoup soup, EqmSerialMesh *serial)
   PetscFunctionReturn(0);
 }
 
+/* EqmSoupCopy - a soup of its own with the same mesh, slabs, density and provenance.
+
+   Collective. copy - to be freed with EqmSoupDestroy. Errors: out of memory. */
+PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
+{
+  const size_t num_vertices = (size_t)(soup->vertex_end - soup->vertex_start);
+  const size_t num_cells = (size_t)(soup->cell_end - soup->cell_start), width = (size_t)soup->cell_size;
+  EqmSoup s;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&s));
+  *s = *soup;
+  s->density = NULL;
+  PetscCall(PetscMalloc1(3 * num_vertices, &s->vertices));
+  PetscCall(PetscMalloc1(width * num_cells, &s->cells));
+  PetscCall(PetscArraycpy(s->vertices, soup->vertices, 3 * num_vertices));
+  PetscCall(PetscArraycpy(s->cells, soup->cells, width * num_cells));
+  if (soup->density) {
+    PetscCall(PetscMalloc1(num_cells, &s->density));
+    PetscCall(PetscArraycpy(s->density, soup->density, num_cells));
+  }
+  *copy = s;
+  PetscFunctionReturn(0);
+}
+
 /* EqmSoupDestroy - free a soup. Collective; a NULL soup is fine. */
 PetscErrorCode EqmSoupDestroy(EqmSoup *soup)
 {

@@ -54,6 +54,19 @@ static const struct {
                  {"seconds_total", offsetof(struct _p_EqmMap, total_seconds)}};
 #define LENGTH(table) ((int)(sizeof(table) / sizeof((table)[0])))
 
+/* The mended mesh and its map, so that nothing is lost. */
+static PetscErrorCode DeclareMended(EqmH5 h5, EqmMap mended)
+{
+  EqmSoup soup = mended->soup;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5DeclareReals(h5, "/repaired/coordinates", soup->num_vertices, mended->dim));
+  PetscCall(EqmH5DeclareReals(h5, "/repaired/vertices", soup->num_vertices, 3));
+  PetscCall(EqmH5DeclareIntegers(h5, "/repaired/cells", soup->num_cells, soup->cell_size));
+  PetscCall(EqmH5DeclareIntegers(h5, "/repaired/parent", soup->num_cells, 0));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
 {
   EqmSoup soup = map->soup;
@@ -70,6 +83,7 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
     PetscCall(EqmH5DeclareReals(h5, history_reals[k].path, map->num_history, 0));
   for (int k = 0; k < LENGTH(history_counts); k++)
     PetscCall(EqmH5DeclareIntegers(h5, history_counts[k].path, map->num_history, 0));
+  if (map->mended) PetscCall(DeclareMended(h5, map->mended));
   PetscFunctionReturn(0);
 }
 
@@ -113,18 +127,44 @@ static PetscErrorCode PutOutcome(EqmH5 h5, EqmMap map)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteCells(EqmH5 h5, EqmSoup soup)
+/* What was mended before the map could be made. */
+static PetscErrorCode PutRepair(EqmH5 h5, const EqmRepair *repair)
 {
-  const PetscInt length = soup->cell_size * (soup->cell_end - soup->cell_start);
+  PetscFunctionBegin;
+  PetscCall(EqmH5PutInteger(h5, "repair_duplicate_cells_removed", repair->duplicate_cells_removed));
+  PetscCall(EqmH5PutInteger(h5, "repair_degenerate_cells_removed", repair->degenerate_cells_removed));
+  PetscCall(EqmH5PutInteger(h5, "repair_cells_flipped", repair->cells_flipped));
+  PetscCall(EqmH5PutInteger(h5, "repair_cells_split", repair->cells_split));
+  PetscCall(EqmH5PutInteger(h5, "repair_vertices_added", repair->vertices_added));
+  PetscCall(EqmH5PutInteger(h5, "repair_vertices_unreferenced", repair->vertices_unreferenced));
+  PetscFunctionReturn(0);
+}
+
+/* Converted here: HDF5's own conversion would break the collective write. */
+static PetscErrorCode WriteIndices(EqmH5 h5, const char *path, EqmSlab slab, const PetscInt *values)
+{
+  const PetscInt length = PetscMax(1, slab.width) * slab.count;
   PetscErrorCode error;
   PetscInt64 *wide;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(length, &wide)); /* converted here: HDF5's own conversion would break the collective write */
-  for (PetscInt k = 0; k < length; k++) wide[k] = soup->cells[k];
-  error = EqmH5WriteIntegers(h5, "/mesh/cells", CellSlab(soup, soup->cell_size), wide);
+  PetscCall(PetscMalloc1(length, &wide));
+  for (PetscInt k = 0; k < length; k++) wide[k] = values[k];
+  error = EqmH5WriteIntegers(h5, path, slab, wide);
   PetscCall(PetscFree(wide));
   PetscCall(error);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteMended(EqmH5 h5, EqmMap mended, const PetscInt *parent)
+{
+  EqmSoup soup = mended->soup;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5WriteReals(h5, "/repaired/coordinates", VertexSlab(soup, mended->dim), mended->coordinates));
+  PetscCall(EqmH5WriteReals(h5, "/repaired/vertices", VertexSlab(soup, 3), soup->vertices));
+  PetscCall(WriteIndices(h5, "/repaired/cells", CellSlab(soup, soup->cell_size), soup->cells));
+  PetscCall(WriteIndices(h5, "/repaired/parent", CellSlab(soup, 0), parent));
   PetscFunctionReturn(0);
 }
 
@@ -163,11 +203,12 @@ static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
   PetscFunctionBegin;
   PetscCall(EqmH5WriteReals(h5, "/map/coordinates", VertexSlab(soup, map->dim), map->coordinates));
   PetscCall(EqmH5WriteReals(h5, "/mesh/vertices", VertexSlab(soup, 3), soup->vertices));
-  PetscCall(WriteCells(h5, soup));
+  PetscCall(WriteIndices(h5, "/mesh/cells", CellSlab(soup, soup->cell_size), soup->cells));
   PetscCall(EqmH5WriteReals(h5, "/cell/ratio", CellSlab(soup, 0), map->cell_ratio));
   PetscCall(EqmH5WriteReals(h5, "/vertex/ratio", VertexSlab(soup, 0), map->vertex_ratio));
   if (soup->density) PetscCall(EqmH5WriteReals(h5, "/cell/density", CellSlab(soup, 0), soup->density));
   PetscCall(WriteHistory(h5, map));
+  if (map->mended) PetscCall(WriteMended(h5, map->mended, map->parent));
   PetscFunctionReturn(0);
 }
 
@@ -177,6 +218,7 @@ static PetscErrorCode Fill(EqmH5 h5, EqmMap map)
   PetscCall(DeclareArrays(h5, map));
   PetscCall(PutProvenance(h5, map));
   PetscCall(PutOutcome(h5, map));
+  if (map->mended) PetscCall(PutRepair(h5, &map->repair));
   PetscCall(EqmH5PutInteger(h5, "complete", 0));
   PetscCall(EqmH5Reserve(h5));
   PetscCall(WriteArrays(h5, map));

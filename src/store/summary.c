@@ -54,6 +54,19 @@ static void AddRun(cJSON *root, EqmMap map)
   AddCount(parallel, "threads", map->threads);
 }
 
+/* Only where something was mended. */
+static void AddRepair(cJSON *root, const EqmRepair *repair)
+{
+  cJSON *group = cJSON_AddObjectToObject(root, "repair");
+
+  AddCount(group, "duplicate_cells_removed", repair->duplicate_cells_removed);
+  AddCount(group, "degenerate_cells_removed", repair->degenerate_cells_removed);
+  AddCount(group, "cells_flipped", repair->cells_flipped);
+  AddCount(group, "cells_split", repair->cells_split);
+  AddCount(group, "vertices_added", repair->vertices_added);
+  AddCount(group, "vertices_unreferenced", repair->vertices_unreferenced);
+}
+
 static void AddPercentiles(cJSON *object, const EqmStatistics *statistics)
 {
   AddNumber(object, "p25", statistics->p25);
@@ -143,6 +156,7 @@ static PetscErrorCode WriteOnRoot(EqmMap map, const char *name, char *message, s
   EqmAtomicFile file;
 
   AddRun(root, map);
+  if (map->mended) AddRepair(root, &map->repair);
   AddQuality(root, map);
   AddCost(root, map);
   text = cJSON_Print(root);

@@ -1,0 +1,96 @@
+/* The map of a mended mesh, brought back onto the mesh that the user gave. */
+#include <equimap/map.h>
+#include <petscsf.h>
+
+/* Copy `width` reals per vertex from the slabs of the mended soup to those of the input, whose vertices kept their
+   numbers. Collective. */
+static PetscErrorCode FetchVertices(EqmSoup mended, EqmSoup input, PetscInt width, const PetscReal *from, PetscReal *to)
+{
+  const PetscInt count = input->vertex_end - input->vertex_start;
+  MPI_Datatype row;
+  PetscLayout layout;
+  PetscInt *wanted;
+  PetscSF sf;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(count, &wanted));
+  for (PetscInt i = 0; i < count; i++) wanted[i] = input->vertex_start + i;
+  PetscCall(PetscLayoutCreateFromSizes(mended->comm, mended->vertex_end - mended->vertex_start, mended->num_vertices, 1,
+                                       &layout));
+  PetscCall(PetscSFCreate(mended->comm, &sf));
+  PetscCall(PetscSFSetGraphLayout(sf, layout, count, NULL, PETSC_COPY_VALUES, wanted));
+  PetscCall(PetscFree(wanted));
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &row));
+  PetscCallMPI(MPI_Type_commit(&row));
+  PetscCall(PetscSFBcastBegin(sf, row, from, to, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, row, from, to, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&row));
+  PetscCall(PetscSFDestroy(&sf));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscFunctionReturn(0);
+}
+
+/* The ratio of an input cell is that of all its children together: their image over their measure. Collective. */
+static PetscErrorCode GatherRatios(EqmMap mended, const PetscInt *parent, const PetscReal *weight, EqmMap map)
+{
+  const PetscInt num_children = mended->soup->cell_end - mended->soup->cell_start;
+  const PetscInt num_cells = map->soup->cell_end - map->soup->cell_start;
+  PetscReal *image, *image_sum, *weight_sum;
+  PetscLayout layout;
+  PetscSF sf;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(num_children, &image));
+  PetscCall(PetscCalloc2(num_cells, &image_sum, num_cells, &weight_sum));
+  for (PetscInt c = 0; c < num_children; c++) image[c] = weight[c] * mended->cell_ratio[c];
+  PetscCall(PetscLayoutCreateFromSizes(map->soup->comm, num_cells, map->soup->num_cells, 1, &layout));
+  PetscCall(PetscSFCreate(map->soup->comm, &sf));
+  PetscCall(PetscSFSetGraphLayout(sf, layout, num_children, NULL, PETSC_COPY_VALUES, parent));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, image, image_sum, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, image, image_sum, MPIU_SUM));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, weight, weight_sum, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, weight, weight_sum, MPIU_SUM));
+  for (PetscInt c = 0; c < num_cells; c++) map->cell_ratio[c] = weight_sum[c] > 0. ? image_sum[c] / weight_sum[c] : 1.;
+  PetscCall(PetscSFDestroy(&sf));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscCall(PetscFree(image));
+  PetscCall(PetscFree2(image_sum, weight_sum));
+  PetscFunctionReturn(0);
+}
+
+/* What is told of the run is that of the mended map; what belongs to the input's vertices and cells is not touched. */
+static PetscErrorCode CopyStory(EqmMap mended, EqmMap map)
+{
+  const struct _p_EqmMap own = *map;
+
+  PetscFunctionBegin;
+  *map = *mended;
+  map->soup = own.soup;
+  map->coordinates = own.coordinates;
+  map->cell_ratio = own.cell_ratio;
+  map->vertex_ratio = own.vertex_ratio;
+  PetscCall(PetscMalloc1(mended->num_history, &map->history));
+  PetscCall(PetscArraycpy(map->history, mended->history, mended->num_history));
+  PetscFunctionReturn(0);
+}
+
+/* EqmMapOntoInput - bring the map of a mended mesh back onto the input that EqmSoupRepair made it of.
+
+   Collective. parent - per cell of the mended soup's slab, the input cell it comes from; cell_weight - per cell of that
+   slab, its weight w, in any unit. The input's vertices kept their numbers, so their places and ratios are copied; the
+   places of added vertices are only in `mended`. An input cell gets the weighted mean ratio of its children, 1 if it
+   was removed. Vertices that no cell uses stay at zero. `mended` and `parent` are referenced and must outlive `map`.
+   Errors: none of its own. */
+PetscErrorCode EqmMapOntoInput(EqmMap mended, EqmSoup input, const PetscInt *parent, const PetscReal *cell_weight,
+                               EqmMap *map)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMapCreate(input, mended->dim, map));
+  PetscCall(CopyStory(mended, *map));
+  PetscCall(FetchVertices(mended->soup, input, mended->dim, mended->coordinates, (*map)->coordinates));
+  PetscCall(FetchVertices(mended->soup, input, 1, mended->vertex_ratio, (*map)->vertex_ratio));
+  PetscCall(GatherRatios(mended, parent, cell_weight, *map));
+  (*map)->mended = mended;
+  (*map)->parent = parent;
+  PetscFunctionReturn(0);
+}
