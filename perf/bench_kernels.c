@@ -1,0 +1,378 @@
+/* How close the loops over cells come to the memory's bandwidth: bench_kernels [-n 1000000] [-shape hills]
+   [-max_threads N] [-repetitions 7] [-triad_mib M] [-json FILE]
+
+   The bandwidth is that of the triad a = b + s c (McCalpin's STREAM), on arrays much larger than the last cache, by the
+   same number of threads as the kernel. A kernel's traffic is the compulsory one: every array it must read counts once,
+   every array it must write counts once, as STREAM counts them (no write-allocate). What comes back from the cache, as
+   a vertex does for its six triangles, is free; what is fetched twice is the kernel's own fault and lowers its figure.
+
+   Before every timed repetition the triad's arrays are swept, so that nothing of the mesh is left in a large cache: a
+   mesh of a million vertices fits in the last cache of a server. The best repetition counts. */
+#include <equimap.h>
+#include "linalg/linalg.h"
+#include <cjson/cJSON.h>
+#include <omp.h>
+#include <petsctime.h>
+#include <stdio.h>
+#include <unistd.h>
+
+typedef struct {
+  char shape[32], json[PETSC_MAX_PATH_LEN];
+  PetscInt n, repetitions, max_threads, triad_mib;
+} Options;
+
+/* Everything that a kernel may read or write. */
+typedef struct {
+  EqmMesh mesh;
+  EqmDomain domain;
+  EqmPlace place;
+  EqmAssembly assembly;
+  unsigned char *ones;
+  PetscReal *image, *slope, *first, *second;               /* per local cell */
+  PetscReal *weights;                                      /* 3 per local cell */
+  PetscReal *velocity, *acceleration, *gradient, *applied; /* 2 per local vertex */
+  double nonzeros;                                         /* of the assembled matrix */
+  size_t triad_length;
+  PetscReal *triad[3];
+} Bench;
+
+/* Compulsory bytes per cell, per vertex, per visit of a cell by a block of vertices (its entry in the block's list),
+   per nonzero of the assembled matrix. */
+typedef struct {
+  double cell, vertex, visit, nonzero;
+} Traffic;
+
+typedef struct {
+  const char *name;
+  PetscErrorCode (*run)(Bench *);
+  Traffic traffic;
+} Kernel;
+
+static PetscErrorCode RunMeasure(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmImageMeasure(b->domain, &b->place, b->image));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunSum(Bench *b)
+{
+  EqmImageTotals totals;
+
+  PetscFunctionBegin;
+  PetscCall(EqmImageSum(b->mesh, b->image, &totals));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunGradient(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmImageGradient(b->domain, &b->place, b->slope, b->gradient));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunDerivatives(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmImageDerivatives(b->domain, &b->place, b->velocity, b->acceleration, b->first, b->second));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunCotangents(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianWeights(b->domain, EQM_LAPLACIAN_COTANGENT, NULL, b->weights));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunStretch(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianWeights(b->domain, EQM_LAPLACIAN_STRETCH, &b->place, b->weights));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunApply(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianApply(b->mesh, b->weights, 2, b->place.x, b->applied));
+  PetscFunctionReturn(0);
+}
+
+static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
+{
+  const PetscReal *const w = (const PetscReal *)context + 3 * cell;
+
+  for (PetscInt a = 0; a < 3; a++) {
+    for (PetscInt b = 0; b < 3; b++) matrix[3 * a + b] = a == b ? w[(a + 1) % 3] + w[(a + 2) % 3] : -w[3 - a - b];
+  }
+}
+
+static PetscErrorCode RunAssembly(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmAssemblyFill(b->assembly, CellLaplacian, b->weights));
+  PetscFunctionReturn(0);
+}
+
+/* Bytes of an index, a real, a point in the plane, a point in space, a count of matrix entries. */
+enum {
+  INDEX = sizeof(PetscInt),
+  REAL = sizeof(PetscReal),
+  PLANE = 2 * REAL,
+  SPACE = 3 * REAL,
+  COUNT = sizeof(PetscCount)
+};
+
+static const Kernel kernels[] = {
+    /* cells, a | x */
+    {"EqmImageMeasure", RunMeasure, {.cell = 3 * INDEX + REAL, .vertex = PLANE}},
+    /* a, weight; a is read twice, and counted once */
+    {"EqmImageSum", RunSum, {.cell = 2 * REAL}},
+    /* cells, slope | x, gradient | block's list */
+    {"EqmImageGradient", RunGradient, {.cell = 3 * INDEX + REAL, .vertex = 2 * PLANE, .visit = INDEX}},
+    /* cells, first, second | x, velocity, acceleration */
+    {"EqmImageDerivatives", RunDerivatives, {.cell = 3 * INDEX + 2 * REAL, .vertex = 3 * PLANE}},
+    /* cells, shape, three weights | position */
+    {"EqmLaplacianWeights/cotangent", RunCotangents, {.cell = 3 * INDEX + REAL + 3 * REAL, .vertex = SPACE}},
+    /* cells, weight, three weights | x */
+    {"EqmLaplacianWeights/stretch", RunStretch, {.cell = 3 * INDEX + REAL + 3 * REAL, .vertex = PLANE}},
+    /* cells, three weights | x, y | block's list */
+    {"EqmLaplacianApply", RunApply, {.cell = 3 * INDEX + 3 * REAL, .vertex = 2 * PLANE, .visit = INDEX}},
+    /* cells, three weights, cell_start, six entries written, read, and found by a permutation | start, count | matrix
+       entry written, its range among the entries */
+    {"EqmAssemblyFill",
+     RunAssembly,
+     {.cell = 3 * INDEX + 3 * REAL + INDEX + 6 * (2 * REAL + COUNT), .vertex = INDEX + 1, .nonzero = REAL + COUNT}},
+};
+enum { NUM_KERNELS = sizeof(kernels) / sizeof(kernels[0]) };
+
+static double Bytes(const Bench *b, const Traffic *traffic)
+{
+  const EqmMesh mesh = b->mesh;
+
+  return traffic->cell * mesh->num_local_cells + traffic->vertex * mesh->num_local +
+         traffic->visit * mesh->block_start[mesh->num_blocks] + traffic->nonzero * b->nonzeros;
+}
+
+/* ---- the machine */
+
+/* One sweep; returns its seconds. */
+static double Triad(Bench *b)
+{
+  PetscReal *const restrict a = b->triad[0];
+  const PetscReal *const restrict x = b->triad[1], *const restrict y = b->triad[2];
+  const double begin = MPI_Wtime();
+
+#pragma omp parallel for schedule(static)
+  for (size_t k = 0; k < b->triad_length; k++) a[k] = x[k] + 3. * y[k];
+  return MPI_Wtime() - begin;
+}
+
+/* Bytes per second of the best sweep. */
+static double Bandwidth(Bench *b, PetscInt repetitions)
+{
+  double best = PETSC_MAX_REAL;
+
+  for (PetscInt r = 0; r < repetitions; r++) best = PetscMin(best, Triad(b));
+  return 3. * sizeof(PetscReal) * (double)b->triad_length / best;
+}
+
+/* Four times the last cache per array, unless the user says otherwise. */
+static PetscErrorCode TriadCreate(const Options *options, Bench *b)
+{
+  const long cache = sysconf(_SC_LEVEL3_CACHE_SIZE);
+  const size_t mib = options->triad_mib > 0 ? (size_t)options->triad_mib : PetscMax(256, 4 * (size_t)cache >> 20);
+
+  PetscFunctionBegin;
+  b->triad_length = (mib << 20) / sizeof(PetscReal);
+  for (int k = 0; k < 3; k++) PetscCall(PetscMalloc1(b->triad_length, &b->triad[k]));
+#pragma omp parallel for schedule(static)
+  for (size_t i = 0; i < b->triad_length; i++) b->triad[0][i] = b->triad[1][i] = b->triad[2][i] = 1.;
+  PetscFunctionReturn(0);
+}
+
+/* ---- the mesh */
+
+static PetscErrorCode FillArrays(Bench *b)
+{
+  const EqmMesh mesh = b->mesh;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCreate(b->domain, &b->place));
+  PetscCall(PetscMalloc4(2 * mesh->num_local, &b->velocity, 2 * mesh->num_local, &b->acceleration, 2 * mesh->num_local,
+                         &b->gradient, 2 * mesh->num_local, &b->applied));
+  PetscCall(PetscMalloc5(mesh->num_local_cells, &b->image, mesh->num_local_cells, &b->slope, mesh->num_local_cells,
+                         &b->first, mesh->num_local_cells, &b->second, 3 * mesh->num_local_cells, &b->weights));
+  for (PetscInt k = 0; k < 2 * mesh->num_local; k++) {
+    b->place.x[k] = mesh->position[3 * (k / 2) + k % 2]; /* seen from above: any map will do */
+    b->velocity[k] = PetscSinReal((PetscReal)k);
+    b->acceleration[k] = PetscCosReal((PetscReal)k);
+  }
+  PetscCall(PetscArraycpy(b->slope, mesh->weight, mesh->num_local_cells));
+  PetscCall(RunMeasure(b));
+  PetscCall(RunCotangents(b));
+  PetscFunctionReturn(0);
+}
+
+/* The scalar Laplacian, its lower triangle as the direct solvers take it. */
+static PetscErrorCode MakeAssembly(Bench *b)
+{
+  const EqmMesh mesh = b->mesh;
+  EqmUnknowns unknowns = {.num_owned = mesh->num_owned, .first = mesh->vertex_start, .start = mesh->global};
+  MatInfo info;
+  Mat matrix;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(mesh->num_local, &b->ones));
+  for (PetscInt v = 0; v < mesh->num_local; v++) b->ones[v] = 1;
+  unknowns.count = b->ones;
+  PetscCall(EqmAssemblyCreate(mesh, &unknowns, EQM_STORE_LOWER, &b->assembly));
+  PetscCall(EqmAssemblyGetMat(b->assembly, &matrix));
+  PetscCall(MatGetInfo(matrix, MAT_LOCAL, &info));
+  b->nonzeros = info.nz_used;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BenchCreate(const Options *options, EqmLedger ledger, EqmSoup *soup, Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, options->shape, options->n, 1, soup));
+  PetscCall(EqmMeshCreate(*soup, ledger, &b->mesh));
+  PetscCall(EqmDomainCreateDisk(b->mesh, &b->domain));
+  PetscCall(FillArrays(b));
+  PetscCall(MakeAssembly(b));
+  PetscCall(TriadCreate(options, b));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BenchDestroy(Bench *b)
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) PetscCall(PetscFree(b->triad[k]));
+  PetscCall(EqmAssemblyDestroy(&b->assembly));
+  PetscCall(PetscFree(b->ones));
+  PetscCall(PetscFree5(b->image, b->slope, b->first, b->second, b->weights));
+  PetscCall(PetscFree4(b->velocity, b->acceleration, b->gradient, b->applied));
+  PetscCall(EqmPlaceDestroy(&b->place));
+  PetscCall(EqmDomainDestroy(&b->domain));
+  PetscCall(EqmMeshDestroy(&b->mesh));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the measurement */
+
+static PetscErrorCode TimeKernel(Bench *b, const Kernel *kernel, PetscInt repetitions, double *seconds)
+{
+  PetscFunctionBegin;
+  *seconds = PETSC_MAX_REAL;
+  for (PetscInt r = 0; r < repetitions; r++) {
+    (void)Triad(b);
+    const double begin = MPI_Wtime();
+    PetscCall(kernel->run(b));
+    *seconds = PetscMin(*seconds, MPI_Wtime() - begin);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* All kernels with the present number of threads, on the screen and in `rows`. */
+static PetscErrorCode RunAll(Bench *b, const Options *options, cJSON *rows)
+{
+  const int threads = omp_get_max_threads();
+  const double bandwidth = Bandwidth(b, options->repetitions);
+
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n%d thread%s: triad %.1f GB/s\n", threads, threads > 1 ? "s" : "",
+                        1e-9 * bandwidth));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-30s %10s %10s %8s %10s\n", "kernel", "ns/cell", "bytes/cell", "GB/s",
+                        "% of triad"));
+  for (int k = 0; k < NUM_KERNELS; k++) {
+    const double bytes = Bytes(b, &kernels[k].traffic), cells = b->mesh->num_local_cells;
+    double seconds;
+    PetscCall(TimeKernel(b, &kernels[k], options->repetitions, &seconds));
+    const double share = bytes / seconds / bandwidth;
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-30s %10.2f %10.1f %8.2f %10.1f\n", kernels[k].name,
+                          1e9 * seconds / cells, bytes / cells, 1e-9 * bytes / seconds, 100. * share));
+    cJSON *const row = cJSON_CreateObject();
+    cJSON_AddItemToArray(rows, row);
+    (void)cJSON_AddStringToObject(row, "kernel", kernels[k].name);
+    (void)cJSON_AddNumberToObject(row, "threads", threads);
+    (void)cJSON_AddNumberToObject(row, "triad_bytes_per_second", bandwidth);
+    (void)cJSON_AddNumberToObject(row, "seconds", seconds);
+    (void)cJSON_AddNumberToObject(row, "ns_per_cell", 1e9 * seconds / cells);
+    (void)cJSON_AddNumberToObject(row, "bytes_per_cell", bytes / cells);
+    (void)cJSON_AddNumberToObject(row, "share_of_triad", share);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteJson(const char *name, cJSON *root)
+{
+  char *const text = cJSON_Print(root);
+  FILE *const file = fopen(name, "w");
+
+  PetscFunctionBegin;
+  PetscCheck(text && file, PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "cannot write %s", name);
+  const PetscBool written = (PetscBool)(fprintf(file, "%s\n", text) > 0);
+  PetscCheck(!fclose(file) && written, PETSC_COMM_WORLD, PETSC_ERR_FILE_WRITE, "cannot write %s", name);
+  cJSON_free(text);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AskOptions(Options *options)
+{
+  PetscFunctionBegin;
+  *options = (Options){.shape = "hills", .n = 1000000, .repetitions = 7, .max_threads = omp_get_max_threads()};
+  PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Kernel benchmark", NULL);
+  PetscCall(PetscOptionsString("-shape", "a shape of disk type that equimap generate knows", NULL, options->shape,
+                               options->shape, sizeof(options->shape), NULL));
+  PetscCall(PetscOptionsInt("-n", "vertices, about", NULL, options->n, &options->n, NULL));
+  PetscCall(PetscOptionsInt("-repetitions", "the best of so many counts", NULL, options->repetitions,
+                            &options->repetitions, NULL));
+  PetscCall(PetscOptionsInt("-max_threads", "1, 2, 4, ... and this many threads", NULL, options->max_threads,
+                            &options->max_threads, NULL));
+  PetscCall(PetscOptionsInt("-triad_mib", "MiB per array of the triad (0: four times the last cache)", NULL,
+                            options->triad_mib, &options->triad_mib, NULL));
+  PetscCall(PetscOptionsString("-json", "write the figures to this file", NULL, options->json, options->json,
+                               sizeof(options->json), NULL));
+  PetscOptionsEnd();
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  Options options;
+  Bench bench = {0};
+  EqmLedger ledger;
+  EqmSoup soup;
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  PetscCheck(size == 1, PETSC_COMM_WORLD, PETSC_ERR_SUP, "the benchmark runs on one rank, with threads");
+  PetscCall(AskOptions(&options));
+  PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
+  PetscCall(BenchCreate(&options, ledger, &soup, &bench));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %d vertices, %d cells, %d visits by %d blocks; triad arrays of %d MiB\n",
+                        options.shape, (int)bench.mesh->num_vertices, (int)bench.mesh->num_cells,
+                        (int)bench.mesh->block_start[bench.mesh->num_blocks], (int)bench.mesh->num_blocks,
+                        (int)(bench.triad_length * sizeof(PetscReal) >> 20)));
+  cJSON *const root = cJSON_CreateObject(), *const rows = cJSON_AddArrayToObject(root, "kernels");
+  (void)cJSON_AddStringToObject(root, "equimap", EqmVersion());
+  (void)cJSON_AddStringToObject(root, "git_commit", EqmCommit());
+  (void)cJSON_AddNumberToObject(root, "vertices", bench.mesh->num_vertices);
+  (void)cJSON_AddNumberToObject(root, "cells", bench.mesh->num_cells);
+  for (PetscInt threads = 1;; threads = PetscMin(2 * threads, options.max_threads)) {
+    omp_set_num_threads((int)threads);
+    PetscCall(RunAll(&bench, &options, rows));
+    if (threads >= options.max_threads) break;
+  }
+  if (options.json[0]) PetscCall(WriteJson(options.json, root));
+  cJSON_Delete(root);
+  PetscCall(BenchDestroy(&bench));
+  PetscCall(EqmSoupDestroy(&soup));
+  PetscCall(EqmLedgerDestroy(&ledger));
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(0);
+}
