@@ -15,19 +15,31 @@ typedef enum {
   EQM_VERTEX_CIRCLE, /* on the unit circle: one degree of freedom, the angle */
   EQM_VERTEX_SIDE_X, /* along a horizontal side: the first coordinate */
   EQM_VERTEX_SIDE_Y, /* along a vertical side: the second coordinate */
+  EQM_VERTEX_SPHERE, /* on the unit sphere: two degrees of freedom in the place's own frame */
   EQM_VERTEX_FIXED   /* nowhere else */
 } EqmVertexKind;
 
+/* What is measured of an image simplex. */
+typedef enum {
+  EQM_MEASURE_AREA2,   /* signed area in the plane */
+  EQM_MEASURE_AREA3,   /* area of a flat triangle in space */
+  EQM_MEASURE_HALF_DET /* half of det(p, q, r): the sign of a triangle on the sphere, and nearly its area */
+} EqmMeasureKind;
+
 /* A configuration: the place of every local vertex, ghosts included and up to date. */
 typedef struct {
-  PetscReal *x; /* dim * num_local */
+  PetscReal *x;     /* dim * num_local */
+  PetscReal *frame; /* sphere: 3 * num_local, the first tangent vector, the second is place x first; else NULL */
 } EqmPlace;
 
 typedef struct _p_EqmDomain *EqmDomain;
 struct _p_EqmDomain {
   EqmMesh mesh;
   const char *name;
-  PetscInt dim;                   /* coordinates of a place: 2 or 3 */
+  EqmMeasureKind measure; /* of image cells */
+  PetscBool
+      curved_image; /* image cells can fold without a change of sign of their measure: look at EQM_MEASURE_HALF_DET */
+  PetscInt dim;     /* coordinates of a place: 2 or 3 */
   unsigned char *kind;            /* EqmVertexKind per local vertex */
   PetscInt *dof_start;            /* per local vertex: place of its first degree of freedom in the global vector */
   unsigned char *dof_count;       /* per local vertex */
@@ -47,6 +59,8 @@ PETSC_EXTERN PetscErrorCode EqmDomainCreateDisk(EqmMesh mesh, EqmDomain *domain)
    vertex numbers on the boundary, in any rotation of the boundary's order, the first goes to (0,0); NULL: at quarters
    of the boundary's arc length. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], EqmDomain *domain);
+/* The unit sphere: every vertex on it (001 (2.1)). The mesh must be closed, of genus 0. Collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainCreateSphere(EqmMesh mesh, EqmDomain *domain);
 PETSC_EXTERN PetscErrorCode EqmDomainDestroy(EqmDomain *domain);
 
 PETSC_EXTERN PetscErrorCode EqmPlaceCreate(EqmDomain domain, EqmPlace *place);
@@ -54,6 +68,8 @@ PETSC_EXTERN PetscErrorCode EqmPlaceDestroy(EqmPlace *place);
 PETSC_EXTERN PetscErrorCode EqmPlaceCopy(EqmDomain domain, const EqmPlace *from, EqmPlace *to);
 /* A vector of degrees of freedom. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateVec(EqmDomain domain, Vec *v);
+/* Choose frames for places that were set from outside (sphere; nothing to do elsewhere). Not collective. */
+PETSC_EXTERN PetscErrorCode EqmPlaceMakeFrames(EqmDomain domain, EqmPlace *place);
 /* Put boundary vertices at their first places, by arc length; the others keep theirs. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainPlaceBoundary(EqmDomain domain, EqmPlace *place);
 /* Move along the geodesic of velocity `step` for time `t`: to = exp_from(t step). Ghosts of `to` are up to date. `from`

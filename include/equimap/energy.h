@@ -7,11 +7,6 @@
 
 #include <equimap/domain.h>
 
-/* What is measured of an image simplex. */
-typedef enum {
-  EQM_MEASURE_AREA2 /* signed area in the plane */
-} EqmMeasureKind;
-
 /* Totals of one look at a map. */
 typedef struct {
   PetscReal total;    /* A */
@@ -23,16 +18,29 @@ typedef struct {
 
 /* Image measure a of every local cell. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmImageMeasure(EqmDomain domain, const EqmPlace *place, PetscReal *a);
+/* The same for another measure than the domain's own. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmImageMeasureOf(EqmDomain domain, EqmMeasureKind kind, const EqmPlace *place,
+                                              PetscReal *a);
 /* Sums over all cells from their image measures. Collective. */
 PETSC_EXTERN PetscErrorCode EqmImageSum(EqmMesh mesh, const PetscReal *a, EqmImageTotals *totals);
 /* gradient_i = sum over cells of slope_cell * d a_cell / d x_i, for owned vertices; `slope` per local cell, `gradient`
    dim per owned vertex. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const PetscReal *slope,
                                              PetscReal *gradient);
+PETSC_EXTERN PetscErrorCode EqmImageGradientOf(EqmDomain domain, EqmMeasureKind kind, const EqmPlace *place,
+                                               const PetscReal *slope, PetscReal *gradient);
 /* First and second derivative of a along the curve with the given ambient velocity and acceleration (NULL: zero), per
    local cell. Either output may be NULL. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmImageDerivatives(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity,
                                                 const PetscReal *acceleration, PetscReal *first, PetscReal *second);
+
+PETSC_EXTERN PetscErrorCode EqmImageDerivativesOf(EqmDomain domain, EqmMeasureKind kind, const EqmPlace *place,
+                                                  const PetscReal *velocity, const PetscReal *acceleration,
+                                                  PetscReal *first, PetscReal *second);
+/* How many cells of the map are folded: measure not positive, or on the sphere det not positive. `scratch` per local
+   cell. Collective. */
+PETSC_EXTERN PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *place, PetscReal *scratch,
+                                          PetscInt64 *folds);
 
 /* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), METHODS: free of cancellation) and, if wanted, its
    gradient in degrees of freedom, from dE/da = 2 (r - 1) - E/A. `a` (per local cell) is scratch that returns the image

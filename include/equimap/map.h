@@ -59,9 +59,9 @@ struct _p_EqmMap {
 PETSC_EXTERN PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map);
 PETSC_EXTERN PetscErrorCode EqmMapDestroy(EqmMap *map);
 /* Bring the map of a mended mesh back onto the input that EqmSoupRepair mended: places and vertex ratios of the input's
-   vertices, per input cell the mean ratio of what became of it, weighted by `cell_weight` (per cell of the mended slab),
-   1 where it was removed. Distortion, history and work are those of the mended map. `mended` and `parent` must outlive
-   the map, which writes them into a result file. Vertices that no cell uses stay at zero. Collective. */
+   vertices, per input cell the mean ratio of what became of it, weighted by `cell_weight` (per cell of the mended
+   slab), 1 where it was removed. Distortion, history and work are those of the mended map. `mended` and `parent` must
+   outlive the map, which writes them into a result file. Vertices that no cell uses stay at zero. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMapOntoInput(EqmMap mended, EqmSoup input, const PetscInt *parent,
                                             const PetscReal *cell_weight, EqmMap *map);
 

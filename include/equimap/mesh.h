@@ -35,7 +35,8 @@ struct _p_EqmMesh {
   PetscBool *on_boundary;         /* per local vertex */
   PetscInt num_boundary_facets; /* local: every boundary edge (of tetrahedra: triangle) that touches an owned vertex */
   PetscInt *boundary_facets; /* (cell_size - 1) * num_boundary_facets, local vertex numbers, oriented as the boundary */
-  PetscInt64 *boundary_order; /* per facet: its place in the file, when first all first facets of the cells are listed, ... */
+  PetscInt64
+      *boundary_order; /* per facet: its place in the file, when first all first facets of the cells are listed, ... */
 
   /* Owner-computes blocks for threads: block b owns the vertices block_vertex[b] .. block_vertex[b+1]-1 and visits the
      cells block_cell[block_start[b]] .. in ascending order; the same for every number of threads. */

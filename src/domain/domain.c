@@ -1,5 +1,6 @@
 /* Domains: how each kind of vertex moves. The planar ones are put together in disk.c and square.c. */
 #include "domain/domain_private.h"
+#include "energy/kernel.h"
 
 /* The frame of one vertex; returns its number of degrees of freedom. Not collective. */
 PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, PetscReal frame[9])
@@ -22,6 +23,10 @@ PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, Pet
     frame[0] = 0.;
     frame[1] = 1.;
     return 1;
+  case EQM_VERTEX_SPHERE:
+    for (PetscInt k = 0; k < 3; k++) frame[k] = place->frame[3 * v + k];
+    EqmCross(x, frame, frame + 3);
+    return 2;
   case EQM_VERTEX_FIXED:
     break;
   }
@@ -31,18 +36,15 @@ PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, Pet
 /* Number the degrees of freedom once `kind` is known: each rank's in the order of its vertices. Collective. */
 PetscErrorCode EqmDomainNumber(EqmDomain domain)
 {
-  static const unsigned char planar_count[] = {[EQM_VERTEX_FREE] = 2,
-                                               [EQM_VERTEX_CIRCLE] = 1,
-                                               [EQM_VERTEX_SIDE_X] = 1,
-                                               [EQM_VERTEX_SIDE_Y] = 1,
-                                               [EQM_VERTEX_FIXED] = 0};
+  static const unsigned char dof_count[] = {[EQM_VERTEX_FREE] = 2,   [EQM_VERTEX_CIRCLE] = 1, [EQM_VERTEX_SIDE_X] = 1,
+                                            [EQM_VERTEX_SIDE_Y] = 1, [EQM_VERTEX_SPHERE] = 2, [EQM_VERTEX_FIXED] = 0};
   const EqmMesh mesh = domain->mesh;
   PetscInt count = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(mesh->num_local, &domain->dof_start, mesh->num_local, &domain->dof_count));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
-    domain->dof_count[v] = planar_count[domain->kind[v]];
+    domain->dof_count[v] = dof_count[domain->kind[v]];
     if (v < mesh->num_owned) {
       domain->dof_start[v] = count;
       count += domain->dof_count[v];
@@ -94,6 +96,8 @@ PetscErrorCode EqmPlaceCreate(EqmDomain domain, EqmPlace *place)
 {
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(domain->dim * domain->mesh->num_local, &place->x));
+  place->frame = NULL;
+  if (domain->curved_image) PetscCall(PetscCalloc1(3 * domain->mesh->num_local, &place->frame));
   PetscFunctionReturn(0);
 }
 
@@ -102,6 +106,7 @@ PetscErrorCode EqmPlaceDestroy(EqmPlace *place)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree(place->x));
+  PetscCall(PetscFree(place->frame));
   PetscFunctionReturn(0);
 }
 
@@ -110,6 +115,7 @@ PetscErrorCode EqmPlaceCopy(EqmDomain domain, const EqmPlace *from, EqmPlace *to
 {
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(to->x, from->x, domain->dim * domain->mesh->num_local));
+  if (from->frame) PetscCall(PetscArraycpy(to->frame, from->frame, 3 * domain->mesh->num_local));
   PetscFunctionReturn(0);
 }
 
@@ -118,6 +124,40 @@ PetscErrorCode EqmDomainCreateVec(EqmDomain domain, Vec *v)
   PetscFunctionBegin;
   PetscCall(VecCreateMPI(domain->mesh->comm, domain->num_dofs, PETSC_DECIDE, v));
   PetscFunctionReturn(0);
+}
+
+/* Turn a place on the circle by an angle. Rounding must not add up: the length is set to one. */
+static void MoveOnCircle(const PetscReal *x, PetscReal angle, PetscReal *y)
+{
+  const PetscReal c = PetscCosReal(angle), d = PetscSinReal(angle);
+  const PetscReal turned[2] = {c * x[0] - d * x[1], d * x[0] + c * x[1]};
+  const PetscReal length = PetscSqrtReal(turned[0] * turned[0] + turned[1] * turned[1]);
+
+  y[0] = turned[0] / length;
+  y[1] = turned[1] / length;
+}
+
+/* Follow the great circle of velocity (s1, s2) in the frame (b, x cross b), and carry b along: what of it points along
+   the motion turns with the motion, the rest stays (parallel transport). */
+static void MoveOnSphere(const PetscReal *x, const PetscReal *b, PetscReal s1, PetscReal s2, PetscReal *y,
+                         PetscReal *carried)
+{
+  const PetscReal angle = PetscSqrtReal(s1 * s1 + s2 * s2), c = PetscCosReal(angle), d = PetscSinReal(angle);
+  const PetscReal u1 = angle > 0. ? s1 / angle : 1., u2 = angle > 0. ? s2 / angle : 0.;
+  PetscReal b2[3], new_x[3], new_b[3], length, along;
+
+  EqmCross(x, b, b2);
+  for (PetscInt k = 0; k < 3; k++) {
+    const PetscReal ahead = u1 * b[k] + u2 * b2[k];
+    new_x[k] = c * x[k] + d * ahead;
+    new_b[k] = b[k] + u1 * ((c - 1.) * ahead - d * x[k]);
+  }
+  length = PetscSqrtReal(EqmDot3(new_x, new_x));
+  for (PetscInt k = 0; k < 3; k++) y[k] = new_x[k] / length;
+  along = EqmDot3(new_b, y);
+  for (PetscInt k = 0; k < 3; k++) new_b[k] -= along * y[k];
+  length = PetscSqrtReal(EqmDot3(new_b, new_b));
+  for (PetscInt k = 0; k < 3; k++) carried[k] = new_b[k] / length;
 }
 
 PetscErrorCode EqmDomainMove(EqmDomain domain, const EqmPlace *from, PetscReal t, Vec step, EqmPlace *to)
@@ -133,12 +173,9 @@ PetscErrorCode EqmDomainMove(EqmDomain domain, const EqmPlace *from, PetscReal t
     const PetscReal *const x = from->x + domain->dim * v;
     PetscReal *const y = to->x + domain->dim * v;
     if (domain->kind[v] == EQM_VERTEX_CIRCLE) {
-      const PetscReal angle = t * move[0], c = PetscCosReal(angle), d = PetscSinReal(angle);
-      const PetscReal turned[2] = {c * x[0] - d * x[1], d * x[0] + c * x[1]};
-      const PetscReal length =
-          PetscSqrtReal(turned[0] * turned[0] + turned[1] * turned[1]); /* rounding must not add up */
-      y[0] = turned[0] / length;
-      y[1] = turned[1] / length;
+      MoveOnCircle(x, t * move[0], y);
+    } else if (domain->kind[v] == EQM_VERTEX_SPHERE) {
+      MoveOnSphere(x, from->frame + 3 * v, t * move[0], t * move[1], y, to->frame + 3 * v);
     } else {
       PetscReal frame[9];
       const PetscInt count = EqmDomainFrame(domain, from, v, frame);
@@ -151,6 +188,24 @@ PetscErrorCode EqmDomainMove(EqmDomain domain, const EqmPlace *from, PetscReal t
   }
   PetscCall(VecRestoreArrayRead(step, &s));
   PetscCall(EqmMeshUpdateGhosts(mesh, domain->dim, to->x));
+  if (to->frame) PetscCall(EqmMeshUpdateGhosts(mesh, 3, to->frame));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmPlaceMakeFrames(EqmDomain domain, EqmPlace *place)
+{
+  PetscFunctionBegin;
+  if (!place->frame) PetscFunctionReturn(0);
+  for (PetscInt v = 0; v < domain->mesh->num_local; v++) {
+    const PetscReal *const x = place->x + 3 * v;
+    PetscReal axis[3] = {0., 0., 0.}, b[3], length;
+    PetscInt smallest = 0;
+    for (PetscInt k = 1; k < 3; k++) smallest = PetscAbsReal(x[k]) < PetscAbsReal(x[smallest]) ? k : smallest;
+    axis[smallest] = 1.; /* the axis farthest from x */
+    EqmCross(x, axis, b);
+    length = PetscSqrtReal(EqmDot3(b, b));
+    for (PetscInt k = 0; k < 3; k++) place->frame[3 * v + k] = b[k] / length;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -203,7 +258,9 @@ PetscErrorCode EqmDomainCurvature(EqmDomain domain, const EqmPlace *place, const
 #pragma omp parallel for schedule(static)
   for (PetscInt v = 0; v < domain->mesh->num_local; v++) {
     const PetscReal *const u = velocity + domain->dim * v;
-    const PetscReal squared = domain->kind[v] == EQM_VERTEX_CIRCLE ? u[0] * u[0] + u[1] * u[1] : 0.;
+    const PetscBool curved = (PetscBool)(domain->kind[v] == EQM_VERTEX_CIRCLE || domain->kind[v] == EQM_VERTEX_SPHERE);
+    PetscReal squared = 0.;
+    for (PetscInt c = 0; c < domain->dim && curved; c++) squared += u[c] * u[c];
     for (PetscInt c = 0; c < domain->dim; c++)
       acceleration[domain->dim * v + c] = -squared * place->x[domain->dim * v + c];
   }
@@ -223,6 +280,8 @@ PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place,
   PetscReal local[2] = {0., 1.}; /* length gone round, all steps forward */
 
   PetscFunctionBegin;
+  *in_order = PETSC_TRUE;
+  if (mesh->num_boundary_vertices == 0) PetscFunctionReturn(0);
   for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
     const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
     if (i >= mesh->num_owned) continue;

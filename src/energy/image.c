@@ -3,20 +3,55 @@
 #include "energy/kernel.h"
 #include "energy/loops.h"
 
-PetscErrorCode EqmImageMeasure(EqmDomain domain, const EqmPlace *place, PetscReal *a)
-{
-  const EqmMesh mesh = domain->mesh;
-  const PetscReal *const x = place->x;
-  const PetscInt *const cells = mesh->cells;
+/* Run a loop compiled for its measure. */
+#define FOR_MEASURE(kind, loop, ...)                                                                                   \
+  do {                                                                                                                 \
+    if ((kind) == EQM_MEASURE_AREA2)                                                                                   \
+      loop(EQM_MEASURE_AREA2, __VA_ARGS__);                                                                            \
+    else if ((kind) == EQM_MEASURE_AREA3)                                                                              \
+      loop(EQM_MEASURE_AREA3, __VA_ARGS__);                                                                            \
+    else                                                                                                               \
+      loop(EQM_MEASURE_HALF_DET, __VA_ARGS__);                                                                         \
+  } while (0)
 
-  PetscFunctionBegin;
-  PetscCheck(domain->dim == 2 && mesh->cell_size == 3, mesh->comm, PETSC_ERR_SUP, "only planar images of triangles");
-  PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
+static inline __attribute__((always_inline)) void MeasureLoop(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
+                                                              PetscReal *a)
+{
+  const PetscInt dim = EqmMeasureDim(kind), *const cells = mesh->cells;
+
 #pragma omp parallel for schedule(static)
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    a[c] = EqmArea2(x + 2 * cells[3 * c], x + 2 * cells[3 * c + 1], x + 2 * cells[3 * c + 2]);
+    a[c] = EqmMeasureValue(kind, x + dim * cells[3 * c], x + dim * cells[3 * c + 1], x + dim * cells[3 * c + 2]);
   }
+}
+
+PetscErrorCode EqmImageMeasureOf(EqmDomain domain, EqmMeasureKind kind, const EqmPlace *place, PetscReal *a)
+{
+  const EqmMesh mesh = domain->mesh;
+
+  PetscFunctionBegin;
+  PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
+  FOR_MEASURE(kind, MeasureLoop, mesh, place->x, a);
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmImageMeasure(EqmDomain domain, const EqmPlace *place, PetscReal *a)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmImageMeasureOf(domain, domain->measure, place, a));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *place, PetscReal *scratch, PetscInt64 *folds)
+{
+  const EqmMesh mesh = domain->mesh;
+  PetscInt64 count = 0;
+
+  PetscFunctionBegin;
+  PetscCall(EqmImageMeasureOf(domain, domain->curved_image ? EQM_MEASURE_HALF_DET : domain->measure, place, scratch));
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) count += !(scratch[c] > 0.);
+  PetscCall(MPIU_Allreduce(&count, folds, 1, MPIU_INT64, MPI_SUM, mesh->comm));
   PetscFunctionReturn(0);
 }
 
@@ -86,32 +121,85 @@ PetscErrorCode EqmImageSum(EqmMesh mesh, const PetscReal *a, EqmImageTotals *tot
 
 /* One block: the block's vertices gather from every cell that touches them; each is written by one thread, in one
  * order. */
-static void GradientBlock(EqmMesh mesh, const PetscReal *x, const PetscReal *slope, PetscInt b, PetscReal *gradient)
+static inline __attribute__((always_inline)) void GradientBlock(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
+                                                                const PetscReal *slope, PetscInt b, PetscReal *gradient)
 {
-  const PetscInt first = mesh->block_vertex[b];
+  const PetscInt dim = EqmMeasureDim(kind), first = mesh->block_vertex[b];
   const size_t length = (size_t)(mesh->block_vertex[b + 1] - first);
 
-  for (size_t k = 0; k < 2 * length; k++) gradient[2 * first + (PetscInt)k] = 0.;
+  for (size_t k = 0; k < (size_t)dim * length; k++) gradient[(size_t)(dim * first) + k] = 0.;
   for (PetscInt q = mesh->block_start[b]; q < mesh->block_start[b + 1]; q++) {
     const PetscInt c = mesh->block_cell[q], *const v = mesh->cells + 3 * c;
-    PetscReal g[6];
-    EqmArea2Gradient(x + 2 * v[0], x + 2 * v[1], x + 2 * v[2], g);
+    PetscReal g[9];
+    EqmMeasureGradient(kind, x + dim * v[0], x + dim * v[1], x + dim * v[2], g);
     for (PetscInt corner = 0; corner < 3; corner++) {
       if ((size_t)(v[corner] - first) >= length) continue;
-      gradient[2 * v[corner]] += slope[c] * g[2 * corner];
-      gradient[2 * v[corner] + 1] += slope[c] * g[2 * corner + 1];
+      for (PetscInt k = 0; k < dim; k++) gradient[dim * v[corner] + k] += slope[c] * g[dim * corner + k];
     }
   }
 }
 
-PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const PetscReal *slope, PetscReal *gradient)
+static inline __attribute__((always_inline)) void GradientLoop(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
+                                                               const PetscReal *slope, PetscReal *gradient)
+{
+#pragma omp parallel for schedule(static)
+  for (PetscInt b = 0; b < mesh->num_blocks; b++) GradientBlock(kind, mesh, x, slope, b, gradient);
+}
+
+PetscErrorCode EqmImageGradientOf(EqmDomain domain, EqmMeasureKind kind, const EqmPlace *place, const PetscReal *slope,
+                                  PetscReal *gradient)
 {
   const EqmMesh mesh = domain->mesh;
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
+  FOR_MEASURE(kind, GradientLoop, mesh, place->x, slope, gradient);
+  PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const PetscReal *slope, PetscReal *gradient)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmImageGradientOf(domain, domain->measure, place, slope, gradient));
+  PetscFunctionReturn(0);
+}
+
+static inline __attribute__((always_inline)) void DerivativesLoop(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
+                                                                  const PetscReal *velocity,
+                                                                  const PetscReal *acceleration, PetscReal *first,
+                                                                  PetscReal *second)
+{
+  const PetscInt dim = EqmMeasureDim(kind);
+
 #pragma omp parallel for schedule(static)
-  for (PetscInt b = 0; b < mesh->num_blocks; b++) GradientBlock(mesh, place->x, slope, b, gradient);
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    const PetscInt *const v = mesh->cells + 3 * c;
+    const PetscReal *const p = x + dim * v[0], *const q = x + dim * v[1], *const r = x + dim * v[2];
+    PetscReal g[9], rate = 0., bend;
+    EqmMeasureGradient(kind, p, q, r, g);
+    for (PetscInt a = 0; a < 3; a++) {
+      for (PetscInt k = 0; k < dim; k++) rate += g[dim * a + k] * velocity[dim * v[a] + k];
+    }
+    if (first) first[c] = rate;
+    if (!second) continue;
+    bend = EqmMeasureBend(kind, p, q, r, velocity + dim * v[0], velocity + dim * v[1], velocity + dim * v[2]);
+    for (PetscInt a = 0; a < 3 && acceleration; a++) {
+      for (PetscInt k = 0; k < dim; k++) bend += g[dim * a + k] * acceleration[dim * v[a] + k];
+    }
+    second[c] = bend;
+  }
+}
+
+PetscErrorCode EqmImageDerivativesOf(EqmDomain domain, EqmMeasureKind kind, const EqmPlace *place,
+                                     const PetscReal *velocity, const PetscReal *acceleration, PetscReal *first,
+                                     PetscReal *second)
+{
+  const EqmMesh mesh = domain->mesh;
+
+  PetscFunctionBegin;
+  PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
+  FOR_MEASURE(kind, DerivativesLoop, mesh, place->x, velocity, acceleration, first, second);
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
   PetscFunctionReturn(0);
 }
@@ -119,25 +207,7 @@ PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const P
 PetscErrorCode EqmImageDerivatives(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity,
                                    const PetscReal *acceleration, PetscReal *first, PetscReal *second)
 {
-  const EqmMesh mesh = domain->mesh;
-
   PetscFunctionBegin;
-  PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
-#pragma omp parallel for schedule(static)
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    const PetscInt *const v = mesh->cells + 3 * c;
-    PetscReal g[6], rate = 0., bend = 0.;
-    EqmArea2Gradient(place->x + 2 * v[0], place->x + 2 * v[1], place->x + 2 * v[2], g);
-    for (PetscInt k = 0; k < 6; k++) rate += g[k] * velocity[2 * v[k / 2] + k % 2];
-    if (first) first[c] = rate;
-    if (!second) continue;
-    /* area is quadratic: its second derivative along d is twice the area of the triangle of the d's */
-    bend = 2. * EqmArea2(velocity + 2 * v[0], velocity + 2 * v[1], velocity + 2 * v[2]);
-    if (acceleration) {
-      for (PetscInt k = 0; k < 6; k++) bend += g[k] * acceleration[2 * v[k / 2] + k % 2];
-    }
-    second[c] = bend;
-  }
-  PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
+  PetscCall(EqmImageDerivativesOf(domain, domain->measure, place, velocity, acceleration, first, second));
   PetscFunctionReturn(0);
 }

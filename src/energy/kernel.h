@@ -2,7 +2,7 @@
 #ifndef EQM_KERNEL_H
 #define EQM_KERNEL_H
 
-#include <petscsys.h>
+#include <equimap/domain.h>
 
 /* Area of a triangle in space (001 (2.5)). */
 static inline PetscReal EqmArea3(const PetscReal *p, const PetscReal *q, const PetscReal *r)
@@ -38,6 +38,91 @@ static inline void EqmArea2Gradient(const PetscReal *p, const PetscReal *q, cons
   g[3] = .5 * (p[0] - r[0]);
   g[4] = .5 * (p[1] - q[1]);
   g[5] = .5 * (q[0] - p[0]);
+}
+
+static inline void EqmCross(const PetscReal u[3], const PetscReal v[3], PetscReal w[3])
+{
+  w[0] = u[1] * v[2] - u[2] * v[1];
+  w[1] = u[2] * v[0] - u[0] * v[2];
+  w[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+static inline PetscReal EqmDot3(const PetscReal u[3], const PetscReal v[3])
+{
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+/* Half the determinant of three points: positive where they run counterclockwise seen from outside the sphere, and near
+   the flat area where the triangle is small. */
+static inline PetscReal EqmHalfDet(const PetscReal *p, const PetscReal *q, const PetscReal *r)
+{
+  PetscReal n[3];
+  EqmCross(q, r, n);
+  return .5 * EqmDot3(p, n);
+}
+
+/* ---- one interface to the measures: value, gradient by corner and coordinate, second derivative along straight
+   motions. `kind` is a constant wherever these are called, so that each loop is compiled for its measure. */
+
+static inline PetscInt EqmMeasureDim(EqmMeasureKind kind)
+{
+  return kind == EQM_MEASURE_AREA2 ? 2 : 3;
+}
+
+static inline PetscReal EqmMeasureValue(EqmMeasureKind kind, const PetscReal *p, const PetscReal *q, const PetscReal *r)
+{
+  if (kind == EQM_MEASURE_AREA2) return EqmArea2(p, q, r);
+  return kind == EQM_MEASURE_AREA3 ? EqmArea3(p, q, r) : EqmHalfDet(p, q, r);
+}
+
+/* The flat area's gradient at a corner is half the opposite edge turned in the triangle's plane (001 Appendix A,
+   corrected); the determinant's is half the cross product of the other two. */
+static inline void EqmMeasureGradient(EqmMeasureKind kind, const PetscReal *p, const PetscReal *q, const PetscReal *r,
+                                      PetscReal g[9])
+{
+  const PetscReal *const corner[5] = {p, q, r, p, q};
+
+  if (kind == EQM_MEASURE_AREA2) {
+    EqmArea2Gradient(p, q, r, g);
+    return;
+  }
+  if (kind == EQM_MEASURE_HALF_DET) {
+    for (PetscInt a = 0; a < 3; a++) EqmCross(corner[a + 1], corner[a + 2], g + 3 * a);
+    for (PetscInt k = 0; k < 9; k++) g[k] *= .5;
+    return;
+  }
+  const PetscReal u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+  PetscReal n[3], scale;
+  EqmCross(u, v, n);
+  scale = .5 / PetscSqrtReal(EqmDot3(n, n));
+  for (PetscInt k = 0; k < 3; k++) n[k] *= scale;
+  for (PetscInt a = 0; a < 3; a++) {
+    const PetscReal *const s = corner[a + 1], *const t = corner[a + 2], e[3] = {t[0] - s[0], t[1] - s[1], t[2] - s[2]};
+    EqmCross(n, e, g + 3 * a);
+  }
+}
+
+/* d2/dt2 of the measure of p + t dp, q + t dq, r + t dr at t = 0. */
+static inline PetscReal EqmMeasureBend(EqmMeasureKind kind, const PetscReal *p, const PetscReal *q, const PetscReal *r,
+                                       const PetscReal *dp, const PetscReal *dq, const PetscReal *dr)
+{
+  if (kind == EQM_MEASURE_AREA2) return 2. * EqmArea2(dp, dq, dr); /* the area is quadratic */
+  if (kind == EQM_MEASURE_HALF_DET) return 2. * (EqmHalfDet(dp, dq, r) + EqmHalfDet(dp, q, dr) + EqmHalfDet(p, dq, dr));
+  /* a = |N|/2, N = N0 + t N1 + t^2 N2 */
+  PetscReal u[3], v[3], du[3], dv[3], n[3], n1[3], n2[3], part[3];
+  for (PetscInt k = 0; k < 3; k++) {
+    u[k] = q[k] - p[k];
+    v[k] = r[k] - p[k];
+    du[k] = dq[k] - dp[k];
+    dv[k] = dr[k] - dp[k];
+  }
+  EqmCross(u, v, n);
+  EqmCross(du, v, n1);
+  EqmCross(u, dv, part);
+  EqmCross(du, dv, n2);
+  for (PetscInt k = 0; k < 3; k++) n1[k] += part[k];
+  const PetscReal length = PetscSqrtReal(EqmDot3(n, n)), along = EqmDot3(n, n1) / length;
+  return .5 * ((EqmDot3(n1, n1) - along * along) + 2. * EqmDot3(n, n2)) / length;
 }
 
 #endif

@@ -9,17 +9,28 @@
    step, for the mean's rank-one term, for the bend of the geodesic. Then the factor serves as the initial inverse
    Hessian of quasi-Newton steps for as long as these pay. */
 #include "method/lm.h"
+#include <math.h>
 
 enum { MOST_DAMPINGS = 8, MEMORY = 10 };
 
+/* Damping follows the length of the step that the search settled on. */
 static void AdaptDamping(EqmLm *lm, PetscReal t)
 {
   if (t >= .99)
-    lm->mu *= .5;
-  else if (t < .13)
-    lm->mu *= 31.6;
-  else if (t <= .3)
+    lm->mu *= .3;
+  else if (t > .3)
+    lm->mu *= 2.;
+  else if (t >= .13)
     lm->mu *= 10.;
+  else
+    lm->mu *= 31.6;
+}
+
+/* Sphere: the barrier gives way when it is a large part of the objective and not needed to keep steps long. */
+static void AdaptBarrier(EqmLm *lm, PetscReal t)
+{
+  while (t > .2 && lm->kappa * lm->now.barrier > .1 * lm->now.squares && lm->kappa > 1e-300) lm->kappa *= .3;
+  EqmLmWeigh(lm, &lm->now);
 }
 
 static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
@@ -50,9 +61,10 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   AdaptDamping(lm, t);
   EqmLmSwap(&lm->now, &lm->best);
   PetscCall(EqmLmInnerSteps(solver));
+  if (lm->kappa > 0.) AdaptBarrier(lm, t);
   PetscCall(EqmPlaceCopy(solver->domain, &lm->now.place, &solver->place));
   PetscCall(PetscArraycpy(solver->image, lm->now.image, solver->mesh->num_local_cells));
-  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
+  PetscCall(EqmSolverSum(solver));
   solver->step_length = t;
   solver->objective = lm->now.objective;
   *outcome = EQM_STEP_TAKEN;
@@ -63,10 +75,12 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 
 static PetscErrorCode TrialCreate(EqmSolver solver, EqmTrial *trial)
 {
+  const PetscInt n = solver->mesh->num_local_cells;
+
   PetscFunctionBegin;
   PetscCall(EqmPlaceCreate(solver->domain, &trial->place));
-  PetscCall(
-      PetscMalloc2(solver->mesh->num_local_cells, &trial->image, solver->mesh->num_local_cells, &trial->residual));
+  PetscCall(PetscMalloc2(n, &trial->image, n, &trial->residual));
+  if (solver->domain->curved_image) PetscCall(PetscMalloc2(n, &trial->half_det, n, &trial->lean));
   PetscFunctionReturn(0);
 }
 
@@ -75,6 +89,7 @@ static PetscErrorCode TrialDestroy(EqmTrial *trial)
   PetscFunctionBegin;
   PetscCall(EqmPlaceDestroy(&trial->place));
   PetscCall(PetscFree2(trial->image, trial->residual));
+  PetscCall(PetscFree2(trial->half_det, trial->lean));
   PetscFunctionReturn(0);
 }
 
@@ -86,6 +101,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
                                 .first = domain->dof_first,
                                 .start = domain->dof_start,
                                 .count = domain->dof_count};
+  const PetscInt dim = domain->dim;
   EqmLm *lm;
 
   PetscFunctionBegin;
@@ -100,8 +116,12 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(TrialCreate(solver, &lm->attempt));
   PetscCall(PetscMalloc3(mesh->num_local_cells, &lm->rate, mesh->num_local_cells, &lm->bend, mesh->num_local_cells,
                          &lm->slope));
-  PetscCall(PetscMalloc3(2 * mesh->num_local, &lm->velocity, 2 * mesh->num_local, &lm->acceleration,
-                         2 * mesh->num_owned, &lm->ambient));
+  PetscCall(PetscMalloc3(dim * mesh->num_local, &lm->velocity, dim * mesh->num_local, &lm->acceleration,
+                         dim * mesh->num_owned, &lm->ambient));
+  if (domain->curved_image) {
+    lm->kappa = 1.;
+    PetscCall(PetscMalloc2(mesh->num_local_cells, &lm->lean_rate, mesh->num_local_cells, &lm->lean_bend));
+  }
   if (lm->epsilon > 0.) {
     PetscCall(PetscMalloc1(3 * mesh->num_local_cells, &lm->laplacian));
     PetscCall(EqmLaplacianWeights(domain, EQM_LAPLACIAN_COTANGENT, NULL, lm->laplacian));
@@ -119,7 +139,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(EqmPairsCreate(lm->descent, MEMORY, &lm->pairs));
   PetscCall(EqmPlaceCopy(domain, &solver->place, &lm->now.place));
   PetscCall(EqmLmEvaluate(solver, &lm->now));
-  if (PetscIsInfOrNanReal(lm->now.objective)) {
+  if (!(lm->now.objective < INFINITY)) {
     EqmFail(solver->comm, EQM_ERR_USAGE,
             "-method lm needs a start without folds, and -start %s has %" PetscInt64_FMT "; take -start guarded",
             solver->settings.start, solver->totals.folds);
@@ -140,6 +160,7 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscCall(TrialDestroy(&lm->attempt));
   PetscCall(PetscFree3(lm->rate, lm->bend, lm->slope));
   PetscCall(PetscFree3(lm->velocity, lm->acceleration, lm->ambient));
+  PetscCall(PetscFree2(lm->lean_rate, lm->lean_bend));
   PetscCall(PetscFree(lm->laplacian));
   PetscCall(VecDestroy(&lm->descent));
   PetscCall(VecDestroy(&lm->mean));
@@ -158,6 +179,7 @@ const EqmMethod EqmMethodLm = {
     .name = "lm",
     .purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration (METHODS 10, 12)",
     .default_start = "guarded",
+    .sphere_start = "guarded",
     .default_max_it = 60,
     .default_energy_rtol = .05,
     .default_ratio_tol = 1e-4,

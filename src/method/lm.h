@@ -10,16 +10,21 @@ typedef struct {
   EqmPlace place;
   PetscReal *image, *residual; /* per local cell */
   PetscReal squares;           /* sum w rho^2 */
+  PetscReal *half_det, *lean;  /* sphere: half the determinant of each image triangle, q = log(half_det / a) */
+  PetscReal barrier;           /* sphere: sum w q^2 */
+  PetscReal angle;             /* E_D - A, if the angle energy has a weight */
   PetscReal objective;         /* with the angle energy; infinite for a map that folds or disorders the boundary */
 } EqmTrial;
 
 typedef struct {
   EqmLinear linear;
   PetscReal mu, epsilon, angle_weight; /* angle_weight: eps / T */
+  PetscReal kappa;                     /* sphere: weight of the barrier; else 0 */
   PetscReal level;                     /* balanced: log A, held during an iteration */
   EqmTrial now, best, attempt;
-  PetscReal *laplacian;           /* cotangent weights of the mesh, if epsilon > 0 */
-  PetscReal *rate, *bend, *slope; /* per local cell: d rho along the step; second derivative; d rho / d a */
+  PetscReal *laplacian;             /* cotangent weights of the mesh, if epsilon > 0 */
+  PetscReal *lean_rate, *lean_bend; /* sphere: the same of q */
+  PetscReal *rate, *bend, *slope;   /* per local cell: d rho along the step; second derivative; d rho / d a */
   PetscReal *velocity, *acceleration, *ambient;
   Vec descent, mean, step, curve, move; /* -b, g, d, d2, t d + t^2 d2 */
   Vec solved_mean;                      /* y = H^-1 g */
@@ -40,6 +45,7 @@ static inline void EqmLmResidual(PetscBool balanced, PetscReal l, PetscReal *rho
 PETSC_INTERN PetscErrorCode EqmLmWeightedSum(EqmMesh mesh, const PetscReal *x, PetscInt power, PetscReal *sum);
 PETSC_INTERN PetscErrorCode EqmLmRemoveMean(EqmMesh mesh, PetscReal *x);
 PETSC_INTERN PetscErrorCode EqmLmAngleEnergy(EqmSolver solver, const PetscReal *x, PetscReal *energy);
+PETSC_INTERN void EqmLmWeigh(const EqmLm *lm, EqmTrial *trial);
 PETSC_INTERN PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial);
 /* lm_model.c */
 PETSC_INTERN PetscErrorCode EqmLmGradient(EqmSolver solver);

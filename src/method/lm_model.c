@@ -2,6 +2,47 @@
 #include "method/lm.h"
 #include "energy/kernel.h"
 
+/* The degrees of freedom of a cell's vertices: corner and direction of each; returns how many. */
+static inline PetscInt CellBasis(EqmDomain domain, const EqmPlace *place, const PetscInt v[3], PetscInt corner[6],
+                                 PetscReal basis[6][3])
+{
+  PetscInt n = 0;
+
+  for (PetscInt a = 0; a < 3; a++) {
+    PetscReal frame[9];
+    const PetscInt count = EqmDomainFrame(domain, place, v[a], frame);
+    for (PetscInt k = 0; k < count; k++, n++) {
+      corner[n] = a;
+      for (PetscInt c = 0; c < domain->dim; c++) basis[n][c] = frame[domain->dim * k + c];
+    }
+  }
+  return n;
+}
+
+/* d rho and (sphere, else zero) d q by each of them. */
+static inline void CellGradients(EqmSolver solver, PetscInt cell, PetscInt n, const PetscInt corner[6],
+                                 PetscReal basis[6][3], PetscReal of_rho[6], PetscReal of_lean[6])
+{
+  const EqmLm *const lm = solver->data;
+  const EqmDomain domain = solver->domain;
+  const PetscInt *const v = solver->mesh->cells + 3 * cell, dim = domain->dim;
+  const PetscReal *const x = lm->now.place.x, *const p = x + dim * v[0], *const q = x + dim * v[1],
+                         *const r = x + dim * v[2];
+  PetscReal area[9], det[9];
+
+  EqmMeasureGradient(domain->measure, p, q, r, area);
+  if (lm->kappa > 0.) EqmMeasureGradient(EQM_MEASURE_HALF_DET, p, q, r, det);
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal along_area = 0., along_det = 0.;
+    for (PetscInt k = 0; k < dim; k++) along_area += area[dim * corner[i] + k] * basis[i][k];
+    of_rho[i] = lm->slope[cell] * along_area;
+    of_lean[i] = 0.;
+    if (!(lm->kappa > 0.)) continue;
+    for (PetscInt k = 0; k < dim; k++) along_det += det[dim * corner[i] + k] * basis[i][k];
+    of_lean[i] = along_det / lm->now.half_det[cell] - along_area / lm->now.image[cell];
+  }
+}
+
 /* Gauss-Newton, metric and angle energy of one cell, in the degrees of freedom of its vertices. */
 static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 {
@@ -9,30 +50,21 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
   const EqmLm *const lm = solver->data;
   const EqmMesh mesh = solver->mesh;
   const PetscInt *const v = mesh->cells + 3 * cell;
-  const PetscReal *const x = lm->now.place.x;
   const PetscReal floor = .3 * PetscSqrtReal(lm->now.squares);
   const PetscReal elastic = .5 * PetscSqrtReal(3.) * lm->mu * (PetscAbsReal(lm->now.residual[cell]) + floor);
-  const PetscReal angle = .5 * lm->angle_weight, gauss = mesh->weight[cell] * lm->slope[cell] * lm->slope[cell];
-  PetscReal gradient[6], basis[6][2];
-  PetscInt corner[6], n = 0;
+  const PetscReal angle = .5 * lm->angle_weight, weight = mesh->weight[cell];
+  PetscReal basis[6][3], of_rho[6], of_lean[6];
+  PetscInt corner[6];
+  const PetscInt dim = solver->domain->dim, n = CellBasis(solver->domain, &lm->now.place, v, corner, basis);
 
-  EqmArea2Gradient(x + 2 * v[0], x + 2 * v[1], x + 2 * v[2], gradient);
-  for (PetscInt a = 0; a < 3; a++) {
-    PetscReal frame[9];
-    const PetscInt count = EqmDomainFrame(solver->domain, &lm->now.place, v[a], frame);
-    for (PetscInt k = 0; k < count; k++) {
-      corner[n] = a;
-      basis[n][0] = frame[2 * k];
-      basis[n++][1] = frame[2 * k + 1];
-    }
-  }
+  CellGradients(solver, cell, n, corner, basis, of_rho, of_lean);
   for (PetscInt i = 0; i < n; i++) {
-    const PetscReal gi = gradient[2 * corner[i]] * basis[i][0] + gradient[2 * corner[i] + 1] * basis[i][1];
     for (PetscInt j = 0; j < n; j++) {
-      const PetscReal gj = gradient[2 * corner[j]] * basis[j][0] + gradient[2 * corner[j] + 1] * basis[j][1];
-      const PetscReal dot = basis[i][0] * basis[j][0] + basis[i][1] * basis[j][1];
       const PetscInt a = corner[i], b = corner[j];
-      PetscReal entry = gauss * gi * gj + elastic * dot * (a == b ? 2. / 3. : -1. / 3.);
+      PetscReal dot = 0., entry;
+      for (PetscInt k = 0; k < dim; k++) dot += basis[i][k] * basis[j][k];
+      entry = weight * (of_rho[i] * of_rho[j] + lm->kappa * of_lean[i] * of_lean[j]) +
+              elastic * dot * (a == b ? 2. / 3. : -1. / 3.);
       if (angle > 0.) { /* L - Hess A; Hess A couples x of one corner with y of the next: +-1/2 */
         const PetscReal *const w = lm->laplacian + 3 * cell;
         const PetscReal cross = basis[i][0] * basis[j][1] - basis[i][1] * basis[j][0];
@@ -44,23 +76,35 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
   }
 }
 
-/* sum over cells of value * w * slope * grad a (+ angle gradient), in degrees of freedom. */
-static PetscErrorCode PullBack(EqmSolver solver, const PetscReal *value, PetscBool with_angle, Vec result)
+/* sum over cells of w (value d rho + kappa lean_value d q), and the angle energy's half gradient, in degrees of
+   freedom. NULL for `value`: ones; for `lean_value`: nothing. */
+static PetscErrorCode PullBack(EqmSolver solver, const PetscReal *value, const PetscReal *lean_value,
+                               PetscBool with_angle, Vec result)
 {
   EqmLm *const lm = solver->data;
   const EqmMesh mesh = solver->mesh;
+  const PetscInt n = solver->domain->dim * mesh->num_owned;
   const PetscReal angle = with_angle ? .5 * lm->angle_weight : 0.;
   PetscReal *scaled, *pull;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(mesh->num_local_cells, &scaled, 2 * mesh->num_owned, &pull));
+  PetscCall(PetscMalloc2(mesh->num_local_cells, &scaled, n, &pull));
 #pragma omp parallel for schedule(static)
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++)
-    scaled[c] = mesh->weight[c] * lm->slope[c] * (value ? value[c] : 1.) - angle;
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    const PetscReal lean = lean_value ? lm->kappa * lean_value[c] / lm->now.image[c] : 0.;
+    scaled[c] = mesh->weight[c] * (lm->slope[c] * (value ? value[c] : 1.) - lean) - angle;
+  }
   PetscCall(EqmImageGradient(solver->domain, &lm->now.place, scaled, lm->ambient));
+  if (lean_value) {
+#pragma omp parallel for schedule(static)
+    for (PetscInt c = 0; c < mesh->num_local_cells; c++)
+      scaled[c] = mesh->weight[c] * lm->kappa * lean_value[c] / lm->now.half_det[c];
+    PetscCall(EqmImageGradientOf(solver->domain, EQM_MEASURE_HALF_DET, &lm->now.place, scaled, pull));
+    for (PetscInt k = 0; k < n; k++) lm->ambient[k] += pull[k];
+  }
   if (angle > 0.) {
     PetscCall(EqmLaplacianApply(mesh, lm->laplacian, 2, lm->now.place.x, pull));
-    for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) lm->ambient[k] += angle * pull[k];
+    for (PetscInt k = 0; k < n; k++) lm->ambient[k] += angle * pull[k];
   }
   PetscCall(PetscFree2(scaled, pull));
   PetscCall(EqmDomainProject(solver->domain, &lm->now.place, lm->ambient, result));
@@ -134,6 +178,10 @@ PetscErrorCode EqmLmSolveForCurve(EqmSolver solver, PetscReal *ratio)
   PetscCall(EqmDomainExpand(solver->domain, &lm->now.place, lm->step, lm->velocity));
   PetscCall(EqmDomainCurvature(solver->domain, &lm->now.place, lm->velocity, lm->acceleration));
   PetscCall(EqmImageDerivatives(solver->domain, &lm->now.place, lm->velocity, lm->acceleration, lm->rate, lm->bend));
+  if (lm->kappa > 0.) {
+    PetscCall(EqmImageDerivativesOf(solver->domain, EQM_MEASURE_HALF_DET, &lm->now.place, lm->velocity,
+                                    lm->acceleration, lm->lean_rate, lm->lean_bend));
+  }
 #pragma omp parallel for schedule(static)
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
     PetscReal rho, first, second;
@@ -141,19 +189,24 @@ PetscErrorCode EqmLmSolveForCurve(EqmSolver solver, PetscReal *ratio)
                     log_bend = lm->bend[c] / lm->now.image[c] - log_rate * log_rate;
     EqmLmResidual((PetscBool)(lm->epsilon > 0.), PetscLogReal(lm->now.image[c] / mesh->weight[c]) - lm->level, &rho,
                   &first, &second);
+    if (lm->kappa > 0.) {
+      const PetscReal det_rate = lm->lean_rate[c] / lm->now.half_det[c];
+      lm->lean_bend[c] = lm->lean_bend[c] / lm->now.half_det[c] - det_rate * det_rate - log_bend;
+      lm->lean_rate[c] = det_rate - log_rate;
+    }
     lm->rate[c] = first * log_rate;
     lm->bend[c] = first * log_bend + second * log_rate * log_rate;
   }
   if (!(lm->epsilon > 0.)) PetscCall(EqmLmRemoveMean(mesh, lm->bend));
-  PetscCall(PullBack(solver, lm->bend, PETSC_FALSE, lm->curve));
+  PetscCall(PullBack(solver, lm->bend, lm->kappa > 0. ? lm->lean_bend : NULL, PETSC_FALSE, lm->curve));
   PetscCall(VecGetArray(lm->curve, &array));
   PetscCall(EqmLinearSolve(lm->linear, 1, array, array));
   PetscCall(VecRestoreArray(lm->curve, &array));
   PetscCall(AddMeanTerm(lm, lm->curve));
   PetscCall(VecScale(lm->curve, -.5));
   PetscCall(EqmDomainExpand(solver->domain, &lm->now.place, lm->curve, lm->acceleration));
-  PetscCall(Norm(mesh, 2 * mesh->num_owned, lm->velocity, &step_norm));
-  PetscCall(Norm(mesh, 2 * mesh->num_owned, lm->acceleration, &curve_norm));
+  PetscCall(Norm(mesh, solver->domain->dim * mesh->num_owned, lm->velocity, &step_norm));
+  PetscCall(Norm(mesh, solver->domain->dim * mesh->num_owned, lm->acceleration, &curve_norm));
   *ratio = step_norm > 0. ? curve_norm / step_norm : 0.;
   PetscFunctionReturn(0);
 }
@@ -170,6 +223,11 @@ PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease)
   if (!(lm->epsilon > 0.)) PetscCall(EqmLmRemoveMean(mesh, lm->rate));
   PetscCall(EqmLmWeightedSum(mesh, lm->rate, 2, &squares));
   *decrease = lm->now.squares - squares;
+  if (lm->kappa > 0.) {
+    for (PetscInt c = 0; c < mesh->num_local_cells; c++) lm->lean_rate[c] += lm->now.lean[c];
+    PetscCall(EqmLmWeightedSum(mesh, lm->lean_rate, 2, &squares));
+    *decrease += lm->kappa * (lm->now.barrier - squares);
+  }
   if (lm->epsilon > 0.) {
     PetscReal quadratic, linear, local = 0.;
     PetscReal *pull, *gradient;
@@ -203,7 +261,7 @@ PetscErrorCode EqmLmGradient(EqmSolver solver)
     }
     lm->slope[c] = first / lm->now.image[c];
   }
-  PetscCall(PullBack(solver, lm->now.residual, PETSC_TRUE, lm->descent));
+  PetscCall(PullBack(solver, lm->now.residual, lm->kappa > 0. ? lm->now.lean : NULL, PETSC_TRUE, lm->descent));
   PetscCall(VecScale(lm->descent, -1.));
   PetscCall(VecNorm(lm->descent, NORM_2, &norm));
   solver->gradient_norm = 2. * norm;
@@ -217,7 +275,7 @@ PetscErrorCode EqmLmLinearise(EqmSolver solver)
 
   PetscFunctionBegin;
   PetscCall(EqmLmGradient(solver));
-  if (!(lm->epsilon > 0.)) PetscCall(PullBack(solver, NULL, PETSC_FALSE, lm->mean));
+  if (!(lm->epsilon > 0.)) PetscCall(PullBack(solver, NULL, NULL, PETSC_FALSE, lm->mean));
   PetscFunctionReturn(0);
 }
 

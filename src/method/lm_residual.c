@@ -1,6 +1,7 @@
 /* Residuals of a map and their sums. */
 #include "method/lm.h"
 #include "energy/loops.h"
+#include <math.h>
 
 /* sum over owned cells of w x^k, k = 1 or 2. */
 PetscErrorCode EqmLmWeightedSum(EqmMesh mesh, const PetscReal *x, PetscInt power, PetscReal *sum)
@@ -31,6 +32,19 @@ PetscErrorCode EqmLmRemoveMean(EqmMesh mesh, PetscReal *x)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode AllPositive(EqmMesh mesh, const PetscReal *x, PetscBool *positive)
+{
+  PetscReal smallest = 1., all;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    if (!(x[c] > 0.)) smallest = -1.;
+  }
+  PetscCall(MPIU_Allreduce(&smallest, &all, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
+  *positive = (PetscBool)(all > 0.);
+  PetscFunctionReturn(0);
+}
+
 /* (E_D - A): the angle energy of places or, being quadratic in them, of displacements. */
 PetscErrorCode EqmLmAngleEnergy(EqmSolver solver, const PetscReal *x, PetscReal *energy)
 {
@@ -48,28 +62,46 @@ PetscErrorCode EqmLmAngleEnergy(EqmSolver solver, const PetscReal *x, PetscReal 
   PetscFunctionReturn(0);
 }
 
+/* Sphere: q = log(half det / a) keeps triangles from leaning over; `positive` false if one has. Collective. */
+static PetscErrorCode EvaluateBarrier(EqmSolver solver, EqmTrial *trial, PetscBool *positive)
+{
+  const EqmMesh mesh = solver->mesh;
+
+  PetscFunctionBegin;
+  PetscCall(EqmImageMeasureOf(solver->domain, EQM_MEASURE_HALF_DET, &trial->place, trial->half_det));
+  PetscCall(AllPositive(mesh, trial->half_det, positive));
+  if (!*positive) PetscFunctionReturn(0);
+#pragma omp parallel for schedule(static)
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++)
+    trial->lean[c] = PetscLogReal(trial->half_det[c] / trial->image[c]);
+  PetscCall(EqmLmWeightedSum(mesh, trial->lean, 2, &trial->barrier));
+  PetscFunctionReturn(0);
+}
+
+/* What the trial is worth with the present weights. Not collective. */
+void EqmLmWeigh(const EqmLm *lm, EqmTrial *trial)
+{
+  trial->objective = trial->squares + lm->kappa * trial->barrier + lm->angle_weight * trial->angle;
+}
+
 /* Look at trial->place. Counts one evaluation. Collective. */
 PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial)
 {
   EqmLm *const lm = solver->data;
   const EqmMesh mesh = solver->mesh;
   const PetscBool balanced = (PetscBool)(lm->epsilon > 0.);
-  PetscReal smallest = 1., ok;
-  PetscBool in_order;
+  PetscBool fine;
   EqmWork *work;
 
   PetscFunctionBegin;
   PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
   work->evaluations++;
-  trial->objective = PETSC_INFINITY;
+  trial->objective = INFINITY; /* PETSC_INFINITY is a finite number */
   PetscCall(EqmImageMeasure(solver->domain, &trial->place, trial->image));
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    if (!(trial->image[c] > 0.)) smallest = -1.;
-  }
-  PetscCall(MPIU_Allreduce(&smallest, &ok, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
-  if (ok < 0.) PetscFunctionReturn(0);
-  PetscCall(EqmDomainBoundaryInOrder(solver->domain, &trial->place, &in_order));
-  if (!in_order) PetscFunctionReturn(0);
+  PetscCall(AllPositive(mesh, trial->image, &fine));
+  if (fine && solver->domain->curved_image) PetscCall(EvaluateBarrier(solver, trial, &fine));
+  if (fine) PetscCall(EqmDomainBoundaryInOrder(solver->domain, &trial->place, &fine));
+  if (!fine) PetscFunctionReturn(0);
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
 #pragma omp parallel for schedule(static)
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
@@ -80,11 +112,7 @@ PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial)
   if (!balanced) PetscCall(EqmLmRemoveMean(mesh, trial->residual));
   PetscCall(EqmLmWeightedSum(mesh, trial->residual, 2, &trial->squares));
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
-  trial->objective = trial->squares;
-  if (balanced) {
-    PetscReal angle;
-    PetscCall(EqmLmAngleEnergy(solver, trial->place.x, &angle));
-    trial->objective += lm->angle_weight * angle;
-  }
+  if (balanced) PetscCall(EqmLmAngleEnergy(solver, trial->place.x, &trial->angle));
+  EqmLmWeigh(lm, trial);
   PetscFunctionReturn(0);
 }

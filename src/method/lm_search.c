@@ -1,5 +1,6 @@
 /* The search along the curve, and the quasi-Newton steps that get more out of a factor. */
 #include "method/lm.h"
+#include <math.h>
 
 enum { MOST_HALVINGS = 7, MOST_INNER = 100, INNER_WINDOW = 5 };
 /* A factorisation costs about as much as so many quasi-Newton steps. */

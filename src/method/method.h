@@ -15,6 +15,7 @@ typedef enum {
 /* A method: one row in the table of methods.c, one file. */
 typedef struct {
   const char *name, *purpose;
+  const char *sphere_start;  /* default on the sphere; NULL: the method does not apply there */
   const char *default_start; /* unless -start says otherwise */
   PetscInt default_max_it;
   PetscReal default_energy_rtol, default_ratio_tol;
@@ -71,6 +72,8 @@ PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 
 /* Refresh solver->image and solver->totals from solver->place. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverLook(EqmSolver solver);
+/* Refresh solver->totals, where solver->image is up to date already. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverSum(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorBegin(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorRow(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorEnd(EqmSolver solver);
@@ -82,15 +85,29 @@ enum { EQM_GROUP_FIXED = -1 };
 PETSC_INTERN PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group);
 /* Solve with the factored Laplacian; columns of num_owned each. Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *columns);
-/* Coordinates that are free of constraint solve L x = 0 with all others held: the discrete harmonic map for `weights`.
-   `to` gets the result; ghosts up to date. Collective. */
+/* Solve L z = 0 on the vertices that are not held, in `width` columns: z (per local vertex, `width` each) holds the
+   held values on entry, all values on return. Counts a factorisation. Collective. */
+PETSC_INTERN PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                                         PetscInt width, PetscReal *z);
+/* Planar: coordinates that are free of constraint solve L x = 0 with all others held: the discrete harmonic map for
+   `weights`. `to` gets the result; ghosts up to date. Collective. */
 PETSC_INTERN PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const EqmPlace *from,
                                            EqmPlace *to);
 
 /* ---- first maps (src/start/start.c) */
-PETSC_INTERN PetscErrorCode EqmStartFind(const char *name);
-PETSC_INTERN PetscErrorCode EqmStartNames(char *text, size_t length);
+PETSC_INTERN PetscErrorCode EqmStartFind(const char *target, const char *name);
+PETSC_INTERN PetscErrorCode EqmStartNames(const char *target, char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmStart(EqmSolver solver);
+/* ---- first maps to the sphere (src/start/sphere.c) */
+/* Laplacian linearisation (001 section 6): one triangle pinned in the plane, the rest harmonic, onto the sphere.
+ * Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereLinear(EqmSolver solver);
+/* One step of 001 Algorithm 2 with inversion radius 1.2 around the pole that `step` (counted from 0) has its turn.
+ * Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscReal *weights);
+/* Turn a map over that is mirrored for the most part. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereOrient(EqmSolver solver);
+
 /* The largest step in (0, 1] along a straight motion that keeps cells of positive area positive, with a margin: .9 of
    the first zero. `velocity` per local vertex. Collective. */
 PETSC_INTERN PetscErrorCode EqmStepToFold(EqmSolver solver, const PetscReal *velocity, PetscReal *step);

@@ -191,7 +191,7 @@ static PetscErrorCode AcceptTrial(EqmSolver solver, PetscReal alpha, PetscReal e
   PetscFunctionBegin;
   PetscCall(EqmPlaceCopy(solver->domain, &ncg->trial, &solver->place));
   PetscCall(PetscArraycpy(solver->image, ncg->image, solver->mesh->num_local_cells));
-  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
+  PetscCall(EqmSolverSum(solver));
   PetscCall(VecCopy(ncg->trial_gradient, ncg->gradient));
   ncg->alpha = solver->step_length = alpha;
   solver->objective = energy;

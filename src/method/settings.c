@@ -8,7 +8,8 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
   *settings = (EqmSettings){.method = "auto",
                             .max_it = -1,
                             .start_steps = -1,
-                            .energy_rtol = -1., .ratio_tol = -1.,
+                            .energy_rtol = -1.,
+                            .ratio_tol = -1.,
                             .gradient_tol = 1e-14,
                             .balance = -1.,
                             .stagnation = 5,
@@ -39,7 +40,7 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
   PetscCall(PetscStrncpy(methods, "the iteration: ", sizeof(methods)));
   PetscCall(EqmMethodNames(methods + 15, sizeof(methods) - 15));
   PetscCall(PetscStrncpy(starts, "the first map: ", sizeof(starts)));
-  PetscCall(EqmStartNames(starts + 15, sizeof(starts) - 15));
+  PetscCall(EqmStartNames(solver->target, starts + 15, sizeof(starts) - 15));
   PetscCall(PetscOptionsString("-method", methods, "EqmSolverSetFromOptions", set->method, set->method,
                                sizeof(set->method), NULL));
   PetscCall(PetscOptionsString("-start", starts, "EqmSolverSetFromOptions", set->start, set->start, sizeof(set->start),
@@ -54,10 +55,11 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
                              "converged when the objective falls by less than this share per iteration, over some "
                              "iterations (-1: the method's own, 0: never)",
                              "EqmSolverSetFromOptions", set->energy_rtol, &set->energy_rtol, NULL));
-  PetscCall(PetscOptionsReal("-ratio_tol",
-                             "converged when the root mean square of ratio - 1 is no larger than this (-1: the method's own, "
-                             "none with -energy_rtol 0; 0: never)",
-                             "EqmSolverSetFromOptions", set->ratio_tol, &set->ratio_tol, NULL));
+  PetscCall(
+      PetscOptionsReal("-ratio_tol",
+                       "converged when the root mean square of ratio - 1 is no larger than this (-1: the method's own, "
+                       "none with -energy_rtol 0; 0: never)",
+                       "EqmSolverSetFromOptions", set->ratio_tol, &set->ratio_tol, NULL));
   PetscCall(PetscOptionsReal("-energy_target", "converged when the energy is no larger than this (0: off)",
                              "EqmSolverSetFromOptions", set->energy_target, &set->energy_target, NULL));
   PetscCall(PetscOptionsReal("-gradient_tol", "converged when the gradient's norm is no larger than this",
@@ -81,6 +83,23 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
   PetscFunctionReturn(0);
 }
 
+/* The method's own start unless one was named; a method that cannot do the target is refused. */
+static PetscErrorCode ChooseStart(EqmSolver solver)
+{
+  EqmSettings *const set = &solver->settings;
+  const char *start = solver->method->default_start;
+  PetscBool sphere;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(solver->target, "sphere", &sphere));
+  if (sphere) start = solver->method->sphere_start;
+  if (!start)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s is not for the %s", solver->method->name, solver->target);
+  if (sphere && set->balance > 0.) EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is for the disk and the square");
+  if (!set->start[0]) PetscCall(PetscStrncpy(set->start, start, sizeof(set->start)));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver)
 {
   EqmSettings *const set = &solver->settings;
@@ -91,8 +110,8 @@ PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver)
   PetscOptionsEnd();
   PetscCall(Check(solver->comm, set));
   PetscCall(EqmMethodFind(set->method, &solver->method));
-  if (!set->start[0]) PetscCall(PetscStrncpy(set->start, solver->method->default_start, sizeof(set->start)));
-  PetscCall(EqmStartFind(set->start));
+  PetscCall(ChooseStart(solver));
+  PetscCall(EqmStartFind(solver->target, set->start));
   if (set->max_it < 0) set->max_it = solver->method->default_max_it;
   if (set->ratio_tol < 0.) set->ratio_tol = set->energy_rtol == 0. ? 0. : solver->method->default_ratio_tol;
   if (set->energy_rtol < 0.) set->energy_rtol = solver->method->default_energy_rtol;
@@ -104,6 +123,7 @@ PetscErrorCode EqmSolverHelp(MPI_Comm comm, const char *target)
   struct _p_EqmSolver solver = {.comm = comm};
 
   PetscFunctionBegin;
+  PetscCall(PetscStrncpy(solver.target, target, sizeof(solver.target)));
   PetscCall(EqmSettingsDefault(&solver.settings));
   PetscCall(EqmSolverSetFromOptions(&solver));
   PetscFunctionReturn(0);

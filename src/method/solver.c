@@ -38,7 +38,20 @@ PetscErrorCode EqmSolverLook(EqmSolver solver)
 {
   PetscFunctionBegin;
   PetscCall(EqmImageMeasure(solver->domain, &solver->place, solver->image));
+  PetscCall(EqmSolverSum(solver));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverSum(EqmSolver solver)
+{
+  PetscReal *scratch;
+
+  PetscFunctionBegin;
   PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
+  if (!solver->domain->curved_image) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &scratch));
+  PetscCall(EqmImageFolds(solver->domain, &solver->place, scratch, &solver->totals.folds));
+  PetscCall(PetscFree(scratch));
   PetscFunctionReturn(0);
 }
 
@@ -54,8 +67,10 @@ static PetscErrorCode Begin(EqmSolver solver)
   else if (!strcmp(solver->target, "square"))
     PetscCall(
         EqmDomainCreateSquare(mesh, solver->settings.has_corners ? solver->settings.corners : NULL, &solver->domain));
+  else if (!strcmp(solver->target, "sphere"))
+    PetscCall(EqmDomainCreateSphere(mesh, &solver->domain));
   else
-    EqmFail(solver->comm, EQM_ERR_USAGE, "there is no target '%s'; choose disk or square", solver->target);
+    EqmFail(solver->comm, EQM_ERR_USAGE, "there is no target '%s'; choose disk, square or sphere", solver->target);
   PetscCall(EqmOrderingCreate(mesh, &solver->ordering));
   PetscCall(EqmPlaceCreate(solver->domain, &solver->place));
   PetscCall(PetscMalloc1(mesh->num_local_cells, &solver->image));
@@ -72,7 +87,8 @@ static PetscBool Stagnates(EqmSolver solver)
 
   if (last < span) return PETSC_FALSE;
   const PetscReal then = solver->objectives[last - span], now = solver->objectives[last];
-  return (PetscBool)(solver->settings.energy_rtol > 0. && then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
+  return (PetscBool)(solver->settings.energy_rtol > 0. &&
+                     then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
 }
 
 /* Is there reason to stop? Says which in status and message. The clock is rank 0's, so that all ranks agree. */
@@ -91,7 +107,8 @@ static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %g",
                             (double)set->energy_target));
   } else if (set->ratio_tol > 0. && solver->totals.energy <= PetscSqr(set->ratio_tol) * solver->totals.total) {
-    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the ratios are within %g of one, root mean square", (double)set->ratio_tol));
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                            "the ratios are within %g of one, root mean square", (double)set->ratio_tol));
   } else if (solver->gradient_norm >= 0. && solver->gradient_norm <= set->gradient_tol) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the gradient's norm is below %g",
                             (double)set->gradient_tol));

@@ -69,17 +69,49 @@ static PetscBool CoordinateIsFree(EqmVertexKind kind, PetscInt c)
                      (kind == EQM_VERTEX_SIDE_Y && c == 1));
 }
 
-/* Right-hand side for coordinate c: what the held values put on the free ones. */
-static PetscErrorCode HeldValues(EqmSolver solver, const PetscReal *weights, const signed char *group,
-                                 const EqmPlace *from, PetscInt c, PetscReal *scratch, PetscReal *rhs)
+PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
+                            PetscReal *z)
 {
   const EqmMesh mesh = solver->mesh;
-  const PetscInt dim = solver->domain->dim;
+  const PetscInt n = mesh->num_owned;
+  PetscReal *held, *pull, *columns;
 
   PetscFunctionBegin;
-  for (PetscInt v = 0; v < mesh->num_local; v++) scratch[v] = group[v] == EQM_GROUP_FIXED ? from->x[dim * v + c] : 0.;
-  PetscCall(EqmLaplacianApply(mesh, weights, 1, scratch, rhs));
-  for (PetscInt v = 0; v < mesh->num_owned; v++) rhs[v] = group[v] == EQM_GROUP_FIXED ? 0. : -rhs[v];
+  PetscCall(PetscMalloc3(width * mesh->num_local, &held, width * n, &pull, width * n, &columns));
+  for (PetscInt v = 0; v < mesh->num_local; v++) {
+    for (PetscInt k = 0; k < width; k++) held[width * v + k] = group[v] == EQM_GROUP_FIXED ? z[width * v + k] : 0.;
+  }
+  PetscCall(EqmLaplacianApply(mesh, weights, width, held, pull));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < width; k++) columns[k * n + v] = group[v] == EQM_GROUP_FIXED ? 0. : -pull[width * v + k];
+  }
+  PetscCall(EqmGroupFactor(solver, weights, group));
+  PetscCall(EqmGroupSolve(solver, width, columns));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < width && group[v] != EQM_GROUP_FIXED; k++) z[width * v + k] = columns[k * n + v];
+  }
+  PetscCall(PetscFree3(held, pull, columns));
+  PetscCall(EqmMeshUpdateGhosts(mesh, width, z));
+  PetscFunctionReturn(0);
+}
+
+/* Coordinates c .. c + width - 1 of the places, solved with the vertices held that `group` says. */
+static PetscErrorCode SolveCoordinates(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt c,
+                                       PetscInt width, EqmPlace *place)
+{
+  const PetscInt dim = solver->domain->dim, n = solver->mesh->num_local;
+  PetscReal *z;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(width * n, &z));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < width; k++) z[width * v + k] = place->x[dim * v + c + k];
+  }
+  PetscCall(EqmHeldSolve(solver, weights, group, width, z));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < width; k++) place->x[dim * v + c + k] = z[width * v + k];
+  }
+  PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
 }
 
@@ -87,35 +119,23 @@ PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const 
 {
   const EqmMesh mesh = solver->mesh;
   const EqmDomain domain = solver->domain;
-  const PetscInt dim = domain->dim, n = mesh->num_owned;
-  signed char *group, *previous;
-  PetscReal *scratch, *columns;
+  signed char *group[2];
+  PetscInt differs = 0, any;
 
   PetscFunctionBegin;
-  PetscCall(
-      PetscMalloc4(mesh->num_local, &group, mesh->num_local, &previous, mesh->num_local, &scratch, dim * n, &columns));
-  for (PetscInt c = 0; c < dim;) {
-    PetscInt same = 0; /* coordinates in a row that have the same vertices free share a factor */
-    for (; c + same < dim; same++) {
-      PetscInt differs = 0, any;
-      for (PetscInt v = 0; v < mesh->num_local; v++) {
-        group[v] = CoordinateIsFree((EqmVertexKind)domain->kind[v], c + same) ? 0 : EQM_GROUP_FIXED;
-        differs |= same > 0 && group[v] != previous[v];
-      }
-      PetscCall(MPIU_Allreduce(&differs, &any, 1, MPIU_INT, MPI_MAX, mesh->comm));
-      if (any) break;
-      PetscCall(PetscArraycpy(previous, group, mesh->num_local));
-      PetscCall(HeldValues(solver, weights, group, from, c + same, scratch, columns + same * n));
-    }
-    PetscCall(EqmGroupFactor(solver, weights, previous));
-    PetscCall(EqmGroupSolve(solver, same, columns));
-    for (PetscInt v = 0; v < n; v++) {
-      for (PetscInt k = 0; k < same; k++)
-        to->x[dim * v + c + k] = previous[v] == EQM_GROUP_FIXED ? from->x[dim * v + c + k] : columns[k * n + v];
-    }
-    c += same;
+  PetscCall(PetscMalloc2(mesh->num_local, &group[0], mesh->num_local, &group[1]));
+  PetscCall(EqmPlaceCopy(domain, from, to));
+  for (PetscInt v = 0; v < mesh->num_local; v++) {
+    for (PetscInt c = 0; c < 2; c++)
+      group[c][v] = CoordinateIsFree((EqmVertexKind)domain->kind[v], c) ? 0 : EQM_GROUP_FIXED;
+    differs |= group[0][v] != group[1][v];
   }
-  PetscCall(PetscFree4(group, previous, scratch, columns));
-  PetscCall(EqmMeshUpdateGhosts(mesh, dim, to->x));
+  PetscCall(MPIU_Allreduce(&differs, &any, 1, MPIU_INT, MPI_MAX, mesh->comm));
+  if (any) { /* coordinates with the same vertices free share a factor */
+    for (PetscInt c = 0; c < 2; c++) PetscCall(SolveCoordinates(solver, weights, group[c], c, 1, to));
+  } else {
+    PetscCall(SolveCoordinates(solver, weights, group[0], 0, 2, to));
+  }
+  PetscCall(PetscFree2(group[0], group[1]));
   PetscFunctionReturn(0);
 }

@@ -1,57 +1,80 @@
 /* First maps. */
 #include "method/method.h"
 
-typedef struct {
+typedef struct StartRow StartRow;
+struct StartRow {
   const char *name, *purpose;
+  PetscBool sphere; /* for closed surfaces; else for the plane */
+  PetscErrorCode (*run)(EqmSolver, const StartRow *, PetscInt steps);
   EqmLaplacianKind laplacian;
-  PetscBool guarded; /* fixed-point steps are cut short before the first fold */
-  PetscInt steps;    /* fixed-point steps unless -start_steps says otherwise */
-} StartRow;
+  PetscBool
+      guarded; /* planar: fixed-point steps are cut short before the first fold; sphere: taken only where they help */
+  PetscInt steps; /* fixed-point steps unless -start_steps says otherwise */
+};
+
+static PetscErrorCode StartInPlane(EqmSolver, const StartRow *, PetscInt);
+static PetscErrorCode StartOnSphere(EqmSolver, const StartRow *, PetscInt);
 
 static const StartRow starts[] = {
-    {"harmonic", "boundary by arc length, interior by cotangent weights", EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
-    {"fixed-point", "harmonic, then fixed-point steps with the boundary held (000 Algorithm 1, lines 4-7)",
-     EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 4},
-    {"tutte", "boundary by arc length, interior by equal weights: never folds", EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 0},
-    {"guarded", "tutte, then fixed-point steps that stop short of the first fold", EQM_LAPLACIAN_UNIFORM, PETSC_TRUE,
-     5},
+    {"harmonic", "boundary by arc length, interior by cotangent weights", PETSC_FALSE, StartInPlane,
+     EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
+    {"fixed-point", "harmonic, then fixed-point steps with the boundary held (000 Algorithm 1, lines 4-7)", PETSC_FALSE,
+     StartInPlane, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 4},
+    {"tutte", "boundary by arc length, interior by equal weights: never folds", PETSC_FALSE, StartInPlane,
+     EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 0},
+    {"guarded", "tutte, then fixed-point steps that stop short of the first fold", PETSC_FALSE, StartInPlane,
+     EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 5},
+    {"linear", "Laplacian linearisation: one triangle pinned, the rest conformal", PETSC_TRUE, StartOnSphere,
+     EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
+    {"fixed-point", "linear, then fixed-point steps (001 Algorithm 2)", PETSC_TRUE, StartOnSphere,
+     EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 10},
+    {"guarded", "linear; fixed-point steps where areas are far off; unfolded", PETSC_TRUE, StartOnSphere,
+     EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 5},
 };
 enum { NUM_STARTS = sizeof(starts) / sizeof(starts[0]) };
 
-static PetscErrorCode FindRow(const char *name, const StartRow **row)
+static PetscErrorCode FindRow(const char *target, const char *name, const StartRow **row)
 {
+  PetscBool sphere;
+
   PetscFunctionBegin;
+  PetscCall(PetscStrcmp(target, "sphere", &sphere));
   *row = NULL;
   for (int k = 0; k < NUM_STARTS; k++) {
     PetscBool same;
     PetscCall(PetscStrcmp(name, starts[k].name, &same));
-    if (same) *row = &starts[k];
+    if (same && starts[k].sphere == sphere) *row = &starts[k];
   }
   if (!*row) {
     char names[EQM_MESSAGE_MAX];
-    PetscCall(EqmStartNames(names, sizeof(names)));
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-start %s: there is no such start; choose one of %s", name, names);
+    PetscCall(EqmStartNames(target, names, sizeof(names)));
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-start %s: there is no such start for the %s; choose one of %s", name,
+            target, names);
   }
   PetscFunctionReturn(0);
 }
 
-/* Fail with EQM_ERR_USAGE if there is no start of this name. Collective. */
-PetscErrorCode EqmStartFind(const char *name)
+/* Fail with EQM_ERR_USAGE if there is no start of this name for the target. Collective. */
+PetscErrorCode EqmStartFind(const char *target, const char *name)
 {
   const StartRow *row;
 
   PetscFunctionBegin;
-  PetscCall(FindRow(name, &row));
+  PetscCall(FindRow(target, name, &row));
   PetscFunctionReturn(0);
 }
 
-/* The names of all starts, separated by commas. Not collective. */
-PetscErrorCode EqmStartNames(char *text, size_t length)
+/* The names of all starts for a target, separated by commas. Not collective. */
+PetscErrorCode EqmStartNames(const char *target, char *text, size_t length)
 {
+  PetscBool sphere;
+
   PetscFunctionBegin;
+  PetscCall(PetscStrcmp(target, "sphere", &sphere));
   text[0] = '\0';
   for (int k = 0; k < NUM_STARTS; k++) {
-    PetscCall(PetscStrlcat(text, k ? ", " : "", length));
+    if (starts[k].sphere != sphere) continue;
+    PetscCall(PetscStrlcat(text, text[0] ? ", " : "", length));
     PetscCall(PetscStrlcat(text, starts[k].name, length));
   }
   PetscFunctionReturn(0);
@@ -61,7 +84,7 @@ PetscErrorCode EqmStartNames(char *text, size_t length)
 static PetscReal FirstZero(PetscReal a0, PetscReal b, PetscReal c)
 {
   const PetscReal discriminant = b * b - 4. * a0 * c;
-  PetscReal q, t = PETSC_INFINITY;
+  PetscReal q, t = PETSC_MAX_REAL;
 
   if (discriminant < 0.) return t;
   q = -.5 * (b + (b >= 0. ? 1. : -1.) * PetscSqrtReal(discriminant));
@@ -73,7 +96,7 @@ static PetscReal FirstZero(PetscReal a0, PetscReal b, PetscReal c)
 PetscErrorCode EqmStepToFold(EqmSolver solver, const PetscReal *velocity, PetscReal *step)
 {
   const EqmMesh mesh = solver->mesh;
-  PetscReal *first, *second, *a, local = PETSC_INFINITY;
+  PetscReal *first, *second, *a, local = PETSC_MAX_REAL;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(mesh->num_local_cells, &first, mesh->num_local_cells, &second, mesh->num_local_cells, &a));
@@ -106,17 +129,12 @@ static PetscErrorCode FixedPointStep(EqmSolver solver, PetscBool guarded, PetscR
   PetscFunctionReturn(0);
 }
 
-/* Compute the first map that the settings ask for. Collective. */
-PetscErrorCode EqmStart(EqmSolver solver)
+static PetscErrorCode StartInPlane(EqmSolver solver, const StartRow *row, PetscInt steps)
 {
-  const StartRow *row;
   PetscReal *weights;
-  PetscInt steps;
   EqmPlace to;
 
   PetscFunctionBegin;
-  PetscCall(FindRow(solver->settings.start, &row));
-  steps = solver->settings.start_steps >= 0 ? solver->settings.start_steps : row->steps;
   PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
   PetscCall(EqmPlaceCreate(solver->domain, &to));
   PetscCall(EqmDomainPlaceBoundary(solver->domain, &solver->place));
@@ -126,5 +144,29 @@ PetscErrorCode EqmStart(EqmSolver solver)
   for (PetscInt k = 0; k < steps; k++) PetscCall(FixedPointStep(solver, row->guarded, weights, &to));
   PetscCall(EqmPlaceDestroy(&to));
   PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartOnSphere(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  PetscReal *weights;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
+  PetscCall(EqmSphereLinear(solver));
+  for (PetscInt k = 0; k < steps; k++) PetscCall(EqmSphereFixedPointStep(solver, k, weights));
+  PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
+
+/* Compute the first map that the settings ask for. Collective. */
+PetscErrorCode EqmStart(EqmSolver solver)
+{
+  const StartRow *row;
+
+  PetscFunctionBegin;
+  PetscCall(FindRow(solver->target, solver->settings.start, &row));
+  PetscCall(row->run(solver, row, solver->settings.start_steps >= 0 ? solver->settings.start_steps : row->steps));
+  PetscCall(EqmPlaceMakeFrames(solver->domain, &solver->place));
   PetscFunctionReturn(0);
 }
