@@ -10,6 +10,8 @@ typedef struct {
   int num_arguments;
   const char *argument[8];
   PetscBool help; /* COMMAND --help: print the options and return */
+  int num_options_files;
+  const char *options_file[8];
 } EqmCommandLine;
 
 /* A command: runs collectively on PETSC_COMM_WORLD; sets the status that becomes the exit code when it returns 0. */
@@ -35,6 +37,8 @@ PETSC_INTERN PetscErrorCode EqmInputRead(const char *command, const char *file, 
 PETSC_INTERN PetscErrorCode EqmInputTakeMap(const EqmInput *input, EqmMesh mesh, EqmMap found, EqmMap *map);
 PETSC_INTERN PetscErrorCode EqmInputDestroy(EqmInput *input);
 PETSC_INTERN PetscErrorCode EqmPrintRepair(const EqmRepair *repair);
+
+PETSC_INTERN PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ...);
 
 /* Fail with EQM_ERR_USAGE if an option was given that nobody asked for. Call after all options have been read, before
    the work starts. Collective. */

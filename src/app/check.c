@@ -224,7 +224,7 @@ static PetscErrorCode PrintUsage(void)
   PetscFunctionBegin;
   PetscCall(PetscPrintf(
       PETSC_COMM_WORLD,
-      "usage: equimap check MESH [-repair [-o MENDED]] [-summary FILE.json]\n"
+      "\nusage: equimap check MESH [-repair [-o MENDED]] [-summary FILE.json]\n"
       "Tells what the mesh is, what is wrong with it (vertices and cells by their number in the file, from 0) and\n"
       "what each command would say. Ends with 0 if one of them can map it, with 3 if none can.\n"));
   PetscFunctionReturn(0);

@@ -28,7 +28,7 @@ static PetscErrorCode PrintUsage(void)
   PetscFunctionBegin;
   PetscCall(PetscPrintf(
       PETSC_COMM_WORLD,
-      "usage: equimap convert IN OUT [-repair] [-refine TIMES]\n"
+      "\nusage: equimap convert IN OUT [-repair] [-refine TIMES]\n"
       "The suffix of OUT chooses its format; IN's is seen from its content. Vertices keep their numbers; new ones\n"
       "come after them.\n"));
   PetscFunctionReturn(0);

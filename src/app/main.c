@@ -26,10 +26,14 @@ enum { NUM_COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 /* Options without a value: what follows them on the command line is an argument, not their value. */
 static const char *const flags[] = {"-quiet", "-help", "-repair", "-log_view", "-options_left", "-unique", "-version"};
 
-static PetscBool TakesNoValue(const char *option)
+/* ... but these words, which no mesh is called. */
+static const char *const truths[] = {"0", "1", "true", "false", "yes", "no", "on", "off"};
+#define IS_ONE_OF(word, list) IsOneOf(word, list, sizeof(list) / sizeof((list)[0]))
+
+static PetscBool IsOneOf(const char *word, const char *const list[], size_t length)
 {
-  for (size_t k = 0; k < sizeof(flags) / sizeof(flags[0]); k++) {
-    if (!strcmp(option, flags[k])) return PETSC_TRUE;
+  for (size_t k = 0; k < length; k++) {
+    if (!strcmp(word, list[k])) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
@@ -39,19 +43,30 @@ static PetscBool IsOption(const char *word)
   return (PetscBool)(word[0] == '-' && word[1] != '\0' && !strchr("0123456789.", word[1]));
 }
 
-/* Split the command line into command, arguments and what is left for PETSc. `argv` keeps its first entry and the
-   options. */
+/* Is word k the value of the option before it? */
+static PetscBool IsValue(char **argv, int k)
+{
+  if (k < 2 || !IsOption(argv[k - 1]) || IsOption(argv[k])) return PETSC_FALSE;
+  return (PetscBool)(!IS_ONE_OF(argv[k - 1], flags) || IS_ONE_OF(argv[k], truths));
+}
+
+/* Split the command line into command, arguments, options files and what is left for PETSc. `argv` keeps its first
+   entry and the options. */
 static void ParseCommandLine(int *argc, char **argv, EqmCommandLine *line, PetscBool *version)
 {
   int kept = 1;
 
   for (int k = 1; k < *argc; k++) {
-    const PetscBool is_value = (PetscBool)(k > 1 && IsOption(argv[k - 1]) && !TakesNoValue(argv[k - 1]));
+    const PetscBool has_value = (PetscBool)(k + 1 < *argc && IsValue(argv, k + 1));
+
     if (!strcmp(argv[k], "--help") || !strcmp(argv[k], "-help") || !strcmp(argv[k], "-h")) {
       line->help = PETSC_TRUE;
     } else if (!strcmp(argv[k], "--version") || !strcmp(argv[k], "-version")) {
       *version = PETSC_TRUE;
-    } else if (IsOption(argv[k]) || is_value) {
+    } else if (!strcmp(argv[k], "-options_file") && has_value &&
+               line->num_options_files < (int)(sizeof(line->options_file) / sizeof(line->options_file[0]))) {
+      line->options_file[line->num_options_files++] = argv[++k];
+    } else if (IsOption(argv[k]) || IsValue(argv, k)) {
       argv[kept++] = argv[k];
     } else if (!line->command) {
       line->command = argv[k];
@@ -61,6 +76,47 @@ static void ParseCommandLine(int *argc, char **argv, EqmCommandLine *line, Petsc
   }
   argv[kept] = NULL;
   *argc = kept;
+}
+
+/* Is there a file of that name that rank 0 can read? */
+static PetscErrorCode CheckReadable(const char *file)
+{
+  PetscMPIInt rank;
+  PetscBool readable = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  if (rank == 0) PetscCall(PetscTestFile(file, 'r', &readable));
+  PetscCallMPI(MPI_Bcast(&readable, 1, MPIU_BOOL, 0, PETSC_COMM_WORLD));
+  if (!readable) EqmFail(PETSC_COMM_WORLD, EQM_ERR_IO, "cannot read the options file '%s'", file);
+  PetscFunctionReturn(0);
+}
+
+/* Options from files, YAML if they are called .yaml or .yml; what stands on the command line wins. Not left to PETSc,
+   which answers a missing file with a trace. */
+static PetscErrorCode ReadOptionsFiles(const EqmCommandLine *line, int argc, char **argv)
+{
+  PetscBool log_view;
+
+  PetscFunctionBegin;
+  for (int k = 0; k < line->num_options_files; k++) {
+    PetscErrorCode error;
+
+    PetscCall(CheckReadable(line->options_file[k]));
+    PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+    error = PetscOptionsInsertFile(PETSC_COMM_WORLD, NULL, line->options_file[k], PETSC_TRUE);
+    PetscCall(PetscPopErrorHandler());
+    if (error) {
+      EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
+              "cannot understand the options file '%s': in a .yaml file write lines like max_it: 100, in others lines "
+              "like -max_it 100",
+              line->options_file[k]);
+    }
+  }
+  PetscCall(PetscOptionsInsertArgs(NULL, argc - 1, argv + 1));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-log_view", &log_view));
+  if (log_view) PetscCall(PetscLogDefaultBegin()); /* PETSc has begun long ago where the command line asked for it */
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode PrintUsage(void)
@@ -127,9 +183,11 @@ static PetscErrorCode Run(const EqmCommandLine *line, EqmStatus *status)
     if (line->help) {
       PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equimap %s %s\n  %s\n", commands[k].name, commands[k].usage,
                             commands[k].purpose));
+      PetscHelpPrintf = EqmHelpPrintf;
       PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
     }
     PetscCall(commands[k].run(line, status));
+    PetscCall(PetscOptionsClearValue(NULL, "-help")); /* or PETSc would add the options of its own last acts */
     PetscFunctionReturn(0);
   }
   EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "there is no command '%s'; equimap --help lists the commands",
@@ -149,7 +207,8 @@ int main(int argc, char **argv)
     error = PetscPrintf(PETSC_COMM_WORLD, "equimap %s (commit %s, PETSc %d.%d.%d)\n", EqmVersion(), EqmCommit(),
                         PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
   } else {
-    error = Run(&line, &status);
+    error = ReadOptionsFiles(&line, argc, argv);
+    if (!error) error = Run(&line, &status);
   }
   if (error) status = EqmStatusOfError(error);
   if (EqmFinalize()) return EQM_STATUS_INTERNAL;

@@ -82,8 +82,10 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
   PetscFunctionBegin;
   PetscCall(PetscPrintf(comm,
                         "\n%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells, %" PetscInt_FMT
-                        " ranks x %" PetscInt_FMT " threads\n",
-                        map->soup->file, map->soup->num_vertices, map->soup->num_cells, map->ranks, map->threads));
+                        " rank%s x %" PetscInt_FMT " thread%s\n",
+                        map->soup->file, map->soup->num_vertices, map->soup->num_cells, map->ranks,
+                        map->ranks == 1 ? "" : "s", map->threads, map->threads == 1 ? "" : "s"));
+  if (options->quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(map->status), map->message));
   PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double)d->energy, (double)map->energy_initial));
   PetscCall(PetscPrintf(comm, "  area ratio    sd %.3e   min %.4f   median %.6f   max %.4f\n", (double)d->ratio.sd,
                         (double)d->ratio.min, (double)d->ratio.p50, (double)d->ratio.max));

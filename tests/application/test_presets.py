@@ -1,0 +1,86 @@
+"""Run every preset of config/ on a small mesh; options files that are missing, damaged or overruled.
+
+usage: python3 test_presets.py EQUIMAP [RANKS]
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy
+
+CONFIG = pathlib.Path(__file__).resolve().parents[2] / "config"
+
+
+def read_options(preset):
+    """The options of a preset, and that its head says how it is used and where it comes from."""
+    lines = preset.read_text(encoding="utf-8").splitlines()
+    head = "\n".join(line for line in lines if line.startswith("#"))
+    target = preset.stem.split("-")[0]
+    assert f"equimap {target} MESH -o OUT -options_file config/{preset.name}" in head, preset
+    assert "Source: " in head and "Table" in head and "Measured here" in head, preset
+    return dict(line.split(": ") for line in lines if not line.startswith("#"))
+
+
+def main(equimap, ranks):
+    mpirun = ["mpirun", "-n", ranks, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+
+    def run(*arguments, expected=(0, 4)):
+        done = subprocess.run([*mpirun, equimap, *map(str, arguments)], capture_output=True, text=True)
+        assert done.returncode in expected, (arguments, done.returncode, done.stdout[-2000:], done.stderr[-2000:])
+        return done
+
+    def coordinates(path):
+        with h5py.File(path) as file:
+            return file["map/coordinates"][:]
+
+    run("generate", "patch", "-n", "400", "-o", "patch.obj")
+    presets = sorted(CONFIG.glob("*.yaml"))
+    assert presets
+    for preset in presets:
+        wanted, target = read_options(preset), preset.stem.split("-")[0]
+        run(target, "patch.obj", "-o", f"{preset.stem}.h5", "-summary", "run.json", "-options_file", preset)
+        with open("run.json") as file:
+            summary = json.load(file)
+        assert summary["method"] == wanted["method"] and summary["folds"] == 0, (preset, summary)
+        assert summary["iterations"] <= int(wanted.get("max_it", 1000))
+        if wanted.get("energy_rtol") == "0":  # a paper's row: all its iterations, but for a map that is perfect before
+            assert summary["iterations"] == int(wanted["max_it"]) or summary["energy"]["final"] < 1e-12, (preset, summary)
+        with h5py.File(f"{preset.stem}.h5") as file:
+            options = file.attrs["options"].decode()
+        assert all(f"-{name} {value}" in options for name, value in wanted.items()), (preset, options)
+        # what it claims: the same as no options at all; on more ranks no two runs have the same bits
+        if preset.stem.endswith("-default") and ranks == "1":
+            run(target, "patch.obj", "-o", "bare.h5")
+            assert numpy.array_equal(coordinates("bare.h5"), coordinates(f"{preset.stem}.h5")), preset
+
+    overruled = ("-o", "few.h5", "-options_file", CONFIG / "disk-ncg.yaml")
+    for arguments in (("-max_it", "3", *overruled), (*overruled, "-max_it", "3")):  # the command line wins, either way
+        run("disk", "patch.obj", *arguments)
+        with h5py.File("few.h5") as file:
+            assert file.attrs["iterations"] == 3 and file.attrs["method"].decode() == "ncg"
+    missing = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "absent.yaml", expected=(6,))
+    assert "cannot read the options file 'absent.yaml'" in missing.stderr and "PETSC ERROR" not in missing.stderr
+    with open("damaged.yaml", "w") as file:
+        file.write("max_it: [1,\n method")
+    damaged = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "damaged.yaml", expected=(2,))
+    assert "cannot understand the options file 'damaged.yaml'" in damaged.stderr
+    with open("misspelt.yaml", "w") as file:
+        file.write("maxit: 3\n")
+    misspelt = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "misspelt.yaml", expected=(2,))
+    assert "unknown option -maxit" in misspelt.stderr
+    quiet = run("disk", "-quiet", "true", "patch.obj", "-o", "few.h5", "-max_it", "1")
+    assert "iteration" not in quiet.stdout.split("patch.obj")[0]
+    assert not os.path.exists("new.h5")
+    print(f"presets: {len(presets)} run; options files overruled, missing, damaged, misspelt")
+
+
+if __name__ == "__main__":
+    program = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        main(program, sys.argv[2] if len(sys.argv) > 2 else "1")
+        os.chdir("/")
