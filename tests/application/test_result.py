@@ -1,0 +1,199 @@
+"""What a run writes is true: the result file, every other format, summary and history against figures computed anew, on a
+mesh whose vertices and triangles are in no good order, with and without a density.
+
+usage: python3 test_result.py EQUIMAP [RANKS]
+"""
+import csv
+import json
+import os
+import sys
+import tempfile
+
+import h5py
+import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from evaluate import boundary_edges, evaluate  # noqa: E402
+from program import Program  # noqa: E402
+
+
+def read_obj(path):
+    vertices, cells = [], []
+    with open(path) as stream:
+        for line in stream:
+            words = line.split()
+            if words and words[0] == "v":
+                vertices.append([float(word) for word in words[1:4]])
+            if words and words[0] == "f":
+                cells.append([int(word.split("/")[0]) - 1 for word in words[1:4]])
+    return numpy.array(vertices), numpy.array(cells)
+
+
+def shuffle(program, source, target, seed):
+    """The same surface with vertices and triangles renumbered at random and each triangle begun at another corner."""
+    vertices, cells = read_obj(program.file(source))
+    random = numpy.random.RandomState(seed)
+    place = random.permutation(len(vertices))
+    moved = numpy.empty_like(vertices)
+    moved[place] = vertices
+    cells = place[cells[random.permutation(len(cells))]]
+    cells = numpy.array([numpy.roll(cell, random.randint(3)) for cell in cells])
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in moved.tolist()] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in cells.tolist()]
+    program.write(target, "\n".join(lines) + "\n")
+    return moved, cells
+
+
+def close(got, wanted, tolerance=1e-9, what=""):
+    assert abs(got - wanted) <= tolerance * max(abs(wanted), 1e-3), f"{what}: {got!r}, not {wanted!r}"
+
+
+def check_file(path, vertices, cells, density, truth_of):
+    """The result file in input order; returns its coordinates and their figures."""
+    with h5py.File(path, "r") as result:
+        image = result["/map/coordinates"][...]
+        assert image.shape == (len(vertices), 2) and image.dtype == numpy.float64, image.shape
+        assert numpy.array_equal(result["/mesh/vertices"][...], vertices)
+        assert numpy.array_equal(result["/mesh/cells"][...], cells) and result["/mesh/cells"].dtype == numpy.int64
+        assert ("/cell/density" in result) == (density is not None)
+        truth = truth_of(image)
+        assert numpy.allclose(result["/cell/ratio"][...], truth["cell_ratio"], rtol=1e-8, atol=1e-10)
+        assert numpy.allclose(result["/vertex/ratio"][...], truth["vertex_ratio"], rtol=1e-8, atol=1e-10)
+        attributes = {name: value for name, value in result.attrs.items()}
+        for name in ("version", "git_commit", "options", "method", "mesh_file", "mesh_checksum", "ranks", "threads", "status", "date"):
+            assert name in attributes, f"no attribute {name}"
+        assert int(attributes["complete"]) == 1
+        history = {name: result["/history/" + name][...] for name in result["/history"]}
+    return image, truth, history
+
+
+def check_summary(summary, truth, program, code):
+    mesh = summary["mesh"]
+    assert summary["exit_code"] == code and summary["parallel"]["ranks"] == program.ranks, summary["parallel"]
+    assert mesh["boundary_vertices"] == truth["boundary_vertices"] and summary["folds"] == truth["folds"] == 0
+    close(mesh["measure"], truth["measure"], what="measure")
+    close(summary["energy"]["final"], truth["energy"], 1e-7, "energy")
+    assert summary["energy"]["final"] < summary["energy"]["initial"]
+    for group in ("ratio", "ratio_error"):
+        for name, value in summary[group].items():
+            close(value, truth[group][name], 1e-8, f"{group}.{name}")
+    for name, value in summary["angle_error_deg"].items():
+        close(value, truth["angle_error_deg"]["p50" if name == "median" else name], 1e-6, f"angle {name}")
+    seconds, work = summary["seconds"], summary["work"]
+    assert 0 <= sum(seconds[name] for name in seconds if name != "total") <= 1.001 * seconds["total"], seconds
+    assert work["evaluations"] > 0 and work["factorizations"] >= work["coupled_factorizations"] > 0 and work["solves"] > 0
+    memory = summary["memory_bytes"]
+    assert 0 < memory["max_per_rank"] <= memory["total"] <= program.ranks * memory["max_per_rank"]
+
+
+def check_history(path, history, summary):
+    with open(path) as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == summary["iterations"] + 1 == len(history["energy"])
+    assert [int(row["iteration"]) for row in rows] == list(range(len(rows)))
+    for name in ("energy", "sd", "step", "gradient_norm", "seconds"):
+        assert [float(row[name]) for row in rows] == history[name].tolist(), name
+    for name in ("folds", "evaluations", "factorizations", "coupled_factorizations", "solves"):
+        assert [int(row[name]) for row in rows] == history[name].tolist(), name
+    close(float(rows[0]["energy"]), summary["energy"]["initial"], 1e-15, "first energy")
+    close(float(rows[-1]["energy"]), summary["energy"]["final"], 1e-9, "last energy")
+    close(float(rows[-1]["sd"]), summary["ratio"]["sd"], 1e-9, "last sd")
+
+
+def check_target(command, image, cells):
+    edges = {i for edge in boundary_edges(cells) for i in edge}
+    boundary = image[sorted(edges)]
+    if command == "disk":
+        assert numpy.allclose(numpy.linalg.norm(boundary, axis=1), 1.0, atol=1e-14)
+        assert numpy.linalg.norm(image, axis=1).max() <= 1.0 + 1e-14
+    else:
+        assert ((boundary == 0.0) | (boundary == 1.0)).any(axis=1).all() and image.min() == 0.0 and image.max() == 1.0
+        for corner in ((0, 0), (1, 0), (1, 1), (0, 1)):
+            assert (boundary == corner).all(axis=1).sum() == 1, corner
+
+
+def check_run(program, command, mesh, vertices, cells, density, *options):
+    """One run with every output, every figure checked."""
+    if density is not None:
+        program.write("density.csv", "cell,density\n" + "".join(f"{c},{value!r}\n" for c, value in enumerate(density.tolist())))
+        options = (*options, "-density", "density.csv")
+    result = program.succeed(command, mesh, "-o", "out.h5,out.obj,out.ply,out.vtu,out.off,out.msh,out.gii", "-summary", "out.json",
+                             "-history", "out.csv", "-quiet", *options, codes=(0, 4))
+    image, truth, history = check_file(program.file("out.h5"), vertices, cells, density,
+                                       lambda image: evaluate(vertices, cells, image, density))
+    summary = json.loads(program.read("out.json"))
+    assert summary["command"] == command and os.path.basename(summary["mesh"]["file"]) == mesh
+    assert (summary["mesh"]["vertices"], summary["mesh"]["cells"]) == (len(vertices), len(cells))
+    check_summary(summary, truth, program, result.returncode)
+    check_history(program.file("out.csv"), history, summary)
+    check_target(command, image, cells)
+    written, written_cells = read_obj(program.file("out.obj"))
+    assert numpy.array_equal(written_cells, cells) and numpy.array_equal(written[:, :2], image) and not written[:, 2].any()
+    assert b"out.h5" in program.read("out.xmf")
+    return image, summary
+
+
+def check_measure(program, mesh, summary, density):
+    """equimap measure says the same of every file that was written."""
+    options = ["-density", "density.csv"] if density is not None else []
+    for suffix, tolerance in (("h5", 1e-12), ("obj", 1e-12), ("off", 1e-12), ("vtu", 1e-12), ("msh", 1e-12), ("ply", 1e-12), ("gii", 1e-2)):
+        program.succeed("measure", mesh, "out." + suffix, "-summary", "measured.json", *options)
+        measured = json.loads(program.read("measured.json"))
+        for group, name in (("energy", "final"), ("ratio", "sd"), ("ratio", "max"), ("ratio_error", "p95"), ("angle_error_deg", "mean")):
+            close(measured[group][name], summary[group][name], tolerance, f"{suffix}: {group}.{name}")
+
+
+def check_stopping(program):
+    """Stopped early: exit code 4, the map is there; -max_it 0: the start."""
+    program.succeed("disk", "shuffled.obj", "-o", "start.h5", "-summary", "start.json", "-max_it", 0, codes=(4,))
+    summary = json.loads(program.read("start.json"))
+    assert summary["exit_code"] == 4 and summary["iterations"] == 0 and summary["energy"]["initial"] == summary["energy"]["final"]
+    program.succeed("disk", "shuffled.obj", "-o", "wall.h5", "-summary", "wall.json", "-wall_time", "1e-3", "-energy_rtol", 0, codes=(4,))
+    assert "wall_time" in json.loads(program.read("wall.json"))["message"]
+    target = program.succeed("disk", "shuffled.obj", "-o", "target.h5", "-summary", "target.json", "-energy_target", "1e-2")
+    assert target.returncode == 0 and json.loads(program.read("target.json"))["energy"]["final"] <= 1e-2
+    for name in ("start.h5", "wall.h5", "target.h5"):
+        with h5py.File(program.file(name), "r") as result:
+            assert numpy.isfinite(result["/map/coordinates"][...]).all()
+
+
+def check_corners(program, vertices, cells):
+    """The corners that the user names are the corners."""
+    follower = dict(boundary_edges(cells))
+    loop = [min(follower)]
+    while follower[loop[-1]] != loop[0]:
+        loop.append(follower[loop[-1]])
+    corners = [loop[k * len(loop) // 4 + 1] for k in range(4)]
+    program.succeed("square", "shuffled.obj", "-o", "corners.h5", "-max_it", 2, "-corners", ",".join(map(str, corners)), codes=(0, 4))
+    with h5py.File(program.file("corners.h5"), "r") as result:
+        assert result["/map/coordinates"][...][corners].tolist() == [[0, 0], [1, 0], [1, 1], [0, 1]]
+
+
+def check_help(program):
+    """Help and version: on standard output, once, exit code 0."""
+    assert program.succeed("--version").stdout.startswith("equimap ")
+    for arguments, words in ((["--help"], ["disk", "square", "generate"]), (["disk", "--help"], ["-balance", "-max_it", "-density", "-summary"]),
+                             (["square", "--help"], ["-corners"])):
+        output = program.succeed(*arguments).stdout
+        for word in words:
+            assert word in output, f"{arguments}: nothing about {word}"
+        assert output.count("usage: equimap COMMAND") == (1 if arguments == ["--help"] else 0)
+    assert program.run().returncode == 2
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
+        program.succeed("generate", "hills", "-n", 900, "-seed", 5, "-o", "hills.obj", ranks=1)
+        vertices, cells = shuffle(program, "hills.obj", "shuffled.obj", 1)
+        density = 0.5 + numpy.random.RandomState(2).rand(len(cells))
+        for command, weight, options in (("disk", None, ()), ("square", None, ("-balance", "0.02")), ("disk", density, ())):
+            _, summary = check_run(program, command, "shuffled.obj", vertices, cells, weight, "-max_it", 8, *options)
+            print(f"{command}: energy {summary['energy']['final']:.3e}, every figure as computed anew")
+        check_measure(program, "shuffled.obj", summary, density)
+        check_stopping(program)
+        check_corners(program, vertices, cells)
+        check_help(program)
+    return 0
+
+
+sys.exit(main())

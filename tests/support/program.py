@@ -1,0 +1,46 @@
+"""Run equimap as a user does, and look at what comes of it."""
+import os
+import subprocess
+
+
+class Program:
+    """equimap on a number of ranks, in a folder of its own."""
+
+    def __init__(self, path, ranks, folder):
+        self.path = os.path.abspath(path)
+        self.ranks = int(ranks)
+        self.folder = folder
+        self.environment = dict(os.environ)
+        if os.geteuid() == 0:
+            self.environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+    def run(self, *arguments, ranks=None, timeout=120):
+        """Run; a run that does not end is a failure of its own."""
+        ranks = ranks or self.ranks
+        mpirun = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+        command = [*(mpirun if ranks > 1 else []), self.path, *map(str, arguments)]  # one rank: as people run it
+        return subprocess.run(command, cwd=self.folder, env=self.environment, timeout=timeout,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
+
+    def succeed(self, *arguments, codes=(0,), **options):
+        """Run, and insist on one of the exit codes."""
+        result = self.run(*arguments, **options)
+        assert result.returncode in codes, (
+            f"{' '.join(map(str, arguments))}: exit code {result.returncode}\n{result.stdout}{result.stderr}")
+        return result
+
+    def file(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, content):
+        with open(self.file(name), "wb") as stream:
+            stream.write(content if isinstance(content, bytes) else content.encode())
+        return name
+
+    def read(self, name):
+        with open(self.file(name), "rb") as stream:
+            return stream.read()
+
+    def messages(self, result):
+        """The program's own error messages: each begins with its name."""
+        return [line for line in result.stderr.splitlines() if line.startswith("equimap: ")]
