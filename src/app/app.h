@@ -12,6 +12,7 @@ typedef struct {
   PetscBool help; /* COMMAND --help: print the options and return */
   int num_options_files;
   const char *options_file[8];
+  const char *history; /* -history FILE, which PETSc would take for its own option of that name; NULL: not given */
 } EqmCommandLine;
 
 /* A command: runs collectively on PETSC_COMM_WORLD; sets the status that becomes the exit code when it returns 0. */
@@ -38,6 +39,7 @@ PETSC_INTERN PetscErrorCode EqmInputTakeMap(const EqmInput *input, EqmMesh mesh,
 PETSC_INTERN PetscErrorCode EqmInputDestroy(EqmInput *input);
 PETSC_INTERN PetscErrorCode EqmPrintRepair(const EqmRepair *repair);
 
+PETSC_INTERN PetscErrorCode EqmCheckOutput(const char *mesh, const char *files);
 PETSC_INTERN PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ...);
 
 /* Fail with EQM_ERR_USAGE if an option was given that nobody asked for. Call after all options have been read, before

@@ -66,6 +66,8 @@ static void ParseCommandLine(int *argc, char **argv, EqmCommandLine *line, Petsc
     } else if (!strcmp(argv[k], "-options_file") && has_value &&
                line->num_options_files < (int)(sizeof(line->options_file) / sizeof(line->options_file[0]))) {
       line->options_file[line->num_options_files++] = argv[++k];
+    } else if (!strcmp(argv[k], "-history")) {
+      line->history = has_value ? argv[++k] : "";
     } else if (IsOption(argv[k]) || IsValue(argv, k)) {
       argv[kept++] = argv[k];
     } else if (!line->command) {
@@ -93,8 +95,8 @@ static PetscErrorCode CheckReadable(const char *file)
 }
 
 /* Options from files, YAML if they are called .yaml or .yml; what stands on the command line wins. Not left to PETSc,
-   which answers a missing file with a trace. */
-static PetscErrorCode ReadOptionsFiles(const EqmCommandLine *line, int argc, char **argv)
+   which answers a missing file with a trace, and -history with a copy of the screen in the file. */
+static PetscErrorCode InsertOptions(const EqmCommandLine *line, int argc, char **argv)
 {
   PetscBool log_view;
 
@@ -114,6 +116,7 @@ static PetscErrorCode ReadOptionsFiles(const EqmCommandLine *line, int argc, cha
     }
   }
   PetscCall(PetscOptionsInsertArgs(NULL, argc - 1, argv + 1));
+  if (line->history) PetscCall(PetscOptionsSetValue(NULL, "-history", line->history));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-log_view", &log_view));
   if (log_view) PetscCall(PetscLogDefaultBegin()); /* PETSc has begun long ago where the command line asked for it */
   PetscFunctionReturn(0);
@@ -207,7 +210,7 @@ int main(int argc, char **argv)
     error = PetscPrintf(PETSC_COMM_WORLD, "equimap %s (commit %s, PETSc %d.%d.%d)\n", EqmVersion(), EqmCommit(),
                         PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
   } else {
-    error = ReadOptionsFiles(&line, argc, argv);
+    error = InsertOptions(&line, argc, argv);
     if (!error) error = Run(&line, &status);
   }
   if (error) status = EqmStatusOfError(error);

@@ -1,4 +1,4 @@
-/* equimap disk | square MESH -o OUT: read, diagnose, distribute, minimise, measure, write. */
+/* equimap disk | square | sphere MESH -o OUT: read, diagnose, distribute, minimise, measure, write. */
 #include "app.h"
 #include <omp.h>
 
@@ -41,12 +41,14 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOption
 {
   PetscFunctionBegin;
   if (line->num_arguments != 1) {
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
-            "equimap %s wants one mesh file, got %d arguments; usage: equimap %s MESH -o OUT.h5", line->command,
-            line->num_arguments, line->command);
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "%s wants one mesh file, %d given; usage: equimap %s MESH -o OUT.h5",
+            line->command, line->num_arguments, line->command);
   }
   if (!options->has_output) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "no output named; add -o OUT.h5");
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
+  PetscCall(EqmCheckOutput(line->argument[0], options->output));
+  if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[0], options->summary));
+  if (options->has_history) PetscCall(EqmCheckOutput(line->argument[0], options->history));
   PetscFunctionReturn(0);
 }
 
@@ -142,7 +144,7 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscFunctionReturn(0);
 }
 
-/* Run `equimap disk` or `equimap square`. Collective on PETSC_COMM_WORLD. The status is the map's. Errors:
+/* Run a map command, `equimap disk` and its like. Collective on PETSC_COMM_WORLD. The status is the map's. Errors:
    EQM_ERR_USAGE, and those of EqmInputRead, EqmSolverSetFromOptions and EqmMapWrite. */
 PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
 {

@@ -74,8 +74,7 @@ PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(EqmRejectUnknownOptions(line));
   if (line->num_arguments != 2) {
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
-            "equimap measure wants a mesh and a map, got %d arguments; usage: equimap measure MESH MAP",
-            line->num_arguments);
+            "measure wants a mesh and a map, %d given; usage: equimap measure MESH MAP", line->num_arguments);
   }
   PetscCall(Measure(line, density, summary, status));
   PetscFunctionReturn(0);

@@ -1,0 +1,48 @@
+/* Whether results can be written where the user wants them: asked before the run, not after it. */
+#include "app.h"
+#include "base/atomicfile.h"
+#include <sys/stat.h>
+
+static PetscBool IsSameFile(const char *a, const char *b)
+{
+  struct stat one, other;
+
+  return (PetscBool)(!stat(a, &one) && !stat(b, &other) && one.st_dev == other.st_dev && one.st_ino == other.st_ino);
+}
+
+/* On rank 0: a temporary is made and dropped, which knows about quotas, permissions and read-only disks. */
+static PetscErrorCode Probe(const char *mesh, const char *file, char *message, size_t length)
+{
+  EqmAtomicFile probe;
+  PetscErrorCode error;
+
+  if (IsSameFile(mesh, file)) {
+    (void)snprintf(message, length, "'%.900s' is the mesh itself and would be overwritten: give another name", file);
+    return EQM_ERR_USAGE;
+  }
+  error = EqmAtomicBegin(file, &probe, message, length);
+  if (!error) EqmAtomicAbort(&probe);
+  return error;
+}
+
+/* EqmCheckOutput - look whether every name in the comma-separated `files` can be written and is another file than the
+   mesh.
+
+   Collective on PETSC_COMM_WORLD; rank 0 looks. Errors: EQM_ERR_USAGE (no name, or the mesh would be overwritten),
+   EQM_ERR_IO (no such directory, no permission). */
+PetscErrorCode EqmCheckOutput(const char *mesh, const char *files)
+{
+  char message[EQM_MESSAGE_MAX] = "", **names;
+  PetscErrorCode error = 0;
+  PetscMPIInt rank;
+  int count;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCall(PetscStrToArray(files, ',', &count, &names));
+  for (int k = 0; k < count && rank == 0 && !error; k++) error = Probe(mesh, names[k], message, sizeof(message));
+  PetscCall(PetscStrToArrayDestroy(count, names));
+  PetscCall(EqmAgree(PETSC_COMM_WORLD, error, message));
+  if (!count) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-o, -summary and -history want the name of a file");
+  PetscFunctionReturn(0);
+}
