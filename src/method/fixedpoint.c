@@ -108,11 +108,16 @@ static PetscErrorCode StepOnDisk(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+/* One pass of the iteration for the domain. */
+static PetscErrorCode Pass(EqmSolver solver)
 {
   FixedPoint *const fp = solver->data;
 
   PetscFunctionBegin;
+  if (solver->domain->curved_image) {
+    PetscCall(EqmSphereFixedPointStep(solver, solver->iteration, fp->weights));
+    PetscFunctionReturn(0);
+  }
   PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, fp->weights));
   if (solver->domain->kind_of_boundary == EQM_VERTEX_CIRCLE) {
     PetscCall(StepOnDisk(solver));
@@ -120,17 +125,35 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
     PetscCall(EqmHarmonicMap(solver, fp->weights, &solver->place, &fp->to));
     PetscCall(EqmPlaceCopy(solver->domain, &fp->to, &solver->place));
   }
+  PetscFunctionReturn(0);
+}
+
+/* On the sphere the iteration has no limit to go to: it ends where the energy first rises (001 Algorithm 2). */
+static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+{
+  FixedPoint *const fp = solver->data;
+  const PetscReal before = solver->totals.energy;
+
+  PetscFunctionBegin;
+  *outcome = EQM_STEP_TAKEN;
+  if (solver->domain->curved_image) PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &fp->to));
+  PetscCall(Pass(solver));
   PetscCall(EqmSolverLook(solver));
+  if (solver->domain->curved_image && !(solver->totals.energy < before)) {
+    PetscCall(EqmPlaceCopy(solver->domain, &fp->to, &solver->place));
+    PetscCall(EqmSolverLook(solver));
+    *outcome = EQM_STEP_STALLED;
+  }
   solver->step_length = 1.;
   solver->objective = solver->totals.energy;
-  *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
 }
 
 const EqmMethod EqmMethodFixedPoint = {
     .name = "fixed-point",
-    .purpose = "stretch energy minimisation by fixed-point iteration (000 (14), 002 Algorithm 1)",
+    .purpose = "stretch energy minimisation by fixed-point iteration (000 (14), 001 Algorithm 2, 002 Algorithm 1)",
     .default_start = "harmonic",
+    .sphere_start = "linear",
     .default_max_it = 100,
     .default_energy_rtol = 1e-4,
     .set_up = SetUp,

@@ -63,7 +63,7 @@ static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t)
     PetscCall(EqmLmEvaluate(solver, &lm->attempt));
     const PetscReal change = lm->attempt.objective - lm->now.objective;
     if (change < 1e-4 * *t * slope) PetscFunctionReturn(0);
-    if (PetscIsInfOrNanReal(change))
+    if (!(change < INFINITY))
       *t *= .5; /* folds: no parabola */
     else
       *t = PetscMax(.1 * *t, PetscMin(.5 * *t, -.5 * *t * *t * slope / (change - *t * slope)));

@@ -60,7 +60,8 @@ struct _p_EqmSolver {
   PetscReal *objectives; /* of every iteration, num_history long */
   EqmHistoryRow *history;
   PetscInt num_history, most_history;
-  PetscReal last_shown; /* seconds when the last row was printed */
+  PetscReal last_shown;                  /* seconds when the last row was printed */
+  PetscInt64 unfolded_from, unfolded_to; /* folds before and after the last unfolding; 0, 0: none was needed */
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
 };
@@ -77,6 +78,7 @@ PETSC_INTERN PetscErrorCode EqmSolverSum(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorBegin(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorRow(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorEnd(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmMonitorUnfolded(EqmSolver solver, const char *when);
 
 /* ---- scalar Laplacians on groups of vertices (src/start/dirichlet.c) */
 enum { EQM_GROUP_FIXED = -1 };
@@ -107,6 +109,9 @@ PETSC_INTERN PetscErrorCode EqmSphereLinear(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscReal *weights);
 /* Turn a map over that is mirrored for the most part. Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereOrient(EqmSolver solver);
+
+/* ---- bijectivity repair (src/unfold) */
+PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after);
 
 /* The largest step in (0, 1] along a straight motion that keeps cells of positive area positive, with a margin: .9 of
    the first zero. `velocity` per local vertex. Collective. */

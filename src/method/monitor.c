@@ -76,3 +76,14 @@ PetscErrorCode EqmMonitorEnd(EqmSolver solver)
                         solver->message));
   PetscFunctionReturn(0);
 }
+
+/* Folds before and after an unfolding. Collective. */
+PetscErrorCode EqmMonitorUnfolded(EqmSolver solver, const char *when)
+{
+  PetscFunctionBegin;
+  if (solver->settings.quiet) PetscFunctionReturn(0);
+  PetscCall(PetscPrintf(solver->comm,
+                        "unfolding %s: %" PetscInt64_FMT " folded triangles, %" PetscInt64_FMT " afterwards\n", when,
+                        solver->unfolded_from, solver->unfolded_to));
+  PetscFunctionReturn(0);
+}

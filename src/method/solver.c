@@ -167,10 +167,16 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
 {
   PetscFunctionBegin;
   PetscCall(Begin(solver));
+  if (solver->unfolded_from > 0) PetscCall(EqmMonitorUnfolded(solver, "at the start"));
   PetscCall(EqmMonitorBegin(solver));
   PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   PetscCall(Iterate(solver));
   PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  if (solver->domain->curved_image && solver->totals.folds > 0) {
+    PetscCall(EqmSphereUnfold(solver, &solver->unfolded_from, &solver->unfolded_to));
+    PetscCall(EqmSolverLook(solver));
+    PetscCall(EqmMonitorUnfolded(solver, "at the end"));
+  }
   if (solver->totals.folds > 0) {
     solver->status = EQM_STATUS_FOLDS;
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),

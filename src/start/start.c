@@ -1,5 +1,6 @@
 /* First maps. */
 #include "method/method.h"
+#include <stdint.h>
 
 typedef struct StartRow StartRow;
 struct StartRow {
@@ -28,8 +29,8 @@ static const StartRow starts[] = {
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"fixed-point", "linear, then fixed-point steps (001 Algorithm 2)", PETSC_TRUE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 10},
-    {"guarded", "linear; fixed-point steps where areas are far off; unfolded", PETSC_TRUE, StartOnSphere,
-     EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 5},
+    {"guarded", "linear, with fixed-point steps and unfolding where it folds", PETSC_TRUE, StartOnSphere,
+     EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 15},
 };
 enum { NUM_STARTS = sizeof(starts) / sizeof(starts[0]) };
 
@@ -147,6 +148,39 @@ static PetscErrorCode StartInPlane(EqmSolver solver, const StartRow *row, PetscI
   PetscFunctionReturn(0);
 }
 
+/* Fixed-point steps shrink what the linear map blows up, and fold here and there; unfolding mends what is not too bad.
+   Take as few steps as lead to a map without folds, else the map with the fewest. */
+static PetscErrorCode UnfoldedFixedPoint(EqmSolver solver, PetscInt most_steps, PetscReal *weights)
+{
+  enum { STEPS_BETWEEN = 5 };
+  EqmPlace raw, best;
+  PetscInt64 fewest = INT64_MAX, from = 0;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCreate(solver->domain, &raw));
+  PetscCall(EqmPlaceCreate(solver->domain, &best));
+  for (PetscInt k = 0; fewest > 0; k++) {
+    if (k % STEPS_BETWEEN == 0) {
+      PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &raw));
+      PetscCall(EqmSphereUnfold(solver, &solver->unfolded_from, &solver->unfolded_to));
+      if (solver->unfolded_to < fewest) {
+        fewest = solver->unfolded_to;
+        from = solver->unfolded_from;
+        PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &best));
+      }
+      PetscCall(EqmPlaceCopy(solver->domain, &raw, &solver->place));
+    }
+    if (k >= most_steps) break;
+    PetscCall(EqmSphereFixedPointStep(solver, k, weights));
+  }
+  PetscCall(EqmPlaceCopy(solver->domain, &best, &solver->place));
+  solver->unfolded_from = from;
+  solver->unfolded_to = fewest;
+  PetscCall(EqmPlaceDestroy(&raw));
+  PetscCall(EqmPlaceDestroy(&best));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode StartOnSphere(EqmSolver solver, const StartRow *row, PetscInt steps)
 {
   PetscReal *weights;
@@ -154,7 +188,11 @@ static PetscErrorCode StartOnSphere(EqmSolver solver, const StartRow *row, Petsc
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
   PetscCall(EqmSphereLinear(solver));
-  for (PetscInt k = 0; k < steps; k++) PetscCall(EqmSphereFixedPointStep(solver, k, weights));
+  if (row->guarded) {
+    PetscCall(UnfoldedFixedPoint(solver, steps, weights));
+  } else {
+    for (PetscInt k = 0; k < steps; k++) PetscCall(EqmSphereFixedPointStep(solver, k, weights));
+  }
   PetscCall(PetscFree(weights));
   PetscFunctionReturn(0);
 }
