@@ -154,4 +154,23 @@ static inline PetscReal TestMax(MPI_Comm comm, PetscReal local)
   return largest;
 }
 
+/* Root mean square distance of two planar maps (two numbers per local vertex) after the best rotation. Collective. */
+static inline PetscReal TestRmsAfterRotation(EqmMesh mesh, const PetscReal *x, const PetscReal *y)
+{
+  PetscReal turn[2] = {0., 0.}, sum = 0.;
+
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    turn[0] += x[2 * v] * y[2 * v] + x[2 * v + 1] * y[2 * v + 1];
+    turn[1] += x[2 * v] * y[2 * v + 1] - x[2 * v + 1] * y[2 * v];
+  }
+  for (int k = 0; k < 2; k++) turn[k] = TestSum(mesh->comm, turn[k]);
+  const PetscReal length = PetscSqrtReal(turn[0] * turn[0] + turn[1] * turn[1]), c = turn[0] / length,
+                  s = turn[1] / length;
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    sum +=
+        PetscSqr(c * x[2 * v] - s * x[2 * v + 1] - y[2 * v]) + PetscSqr(s * x[2 * v] + c * x[2 * v + 1] - y[2 * v + 1]);
+  }
+  return PetscSqrtReal(TestSum(mesh->comm, sum) / mesh->num_vertices);
+}
+
 #endif
