@@ -1,5 +1,5 @@
 /* How close the loops over cells come to the memory's bandwidth: bench_kernels [-n 1000000] [-shape hills]
-   [-max_threads N] [-repetitions 7] [-triad_mib M] [-json FILE]
+   [-only NAME] [-max_threads N] [-repetitions 7] [-triad_mib M] [-json FILE]
 
    The bandwidth is that of the triad a = b + s c (McCalpin's STREAM), on arrays much larger than the last cache, by the
    same number of threads as the kernel. A kernel's traffic is the compulsory one: every array it must read counts once,
@@ -12,12 +12,13 @@
 #include "linalg/linalg.h"
 #include <cjson/cJSON.h>
 #include <omp.h>
-#include <petsctime.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 typedef struct {
-  char shape[32], json[PETSC_MAX_PATH_LEN];
+  char shape[32], only[32], json[PETSC_MAX_PATH_LEN];
   PetscInt n, repetitions, max_threads, triad_mib;
 } Options;
 
@@ -34,6 +35,7 @@ typedef struct {
   double nonzeros;                                         /* of the assembled matrix */
   size_t triad_length;
   PetscReal *triad[3];
+  double bandwidth; /* of the triad, bytes per second */
 } Bench;
 
 /* Compulsory bytes per cell, per vertex, per visit of a cell by a block of vertices (its entry in the block's list),
@@ -157,8 +159,8 @@ static double Bytes(const Bench *b, const Traffic *traffic)
 
 /* ---- the machine */
 
-/* One sweep; returns its seconds. */
-static double Triad(Bench *b)
+/* One sweep; the best of the sweeps with as many threads gives the bandwidth. */
+static void Triad(Bench *b)
 {
   PetscReal *const restrict a = b->triad[0];
   const PetscReal *const restrict x = b->triad[1], *const restrict y = b->triad[2];
@@ -166,16 +168,7 @@ static double Triad(Bench *b)
 
 #pragma omp parallel for schedule(static)
   for (size_t k = 0; k < b->triad_length; k++) a[k] = x[k] + 3. * y[k];
-  return MPI_Wtime() - begin;
-}
-
-/* Bytes per second of the best sweep. */
-static double Bandwidth(Bench *b, PetscInt repetitions)
-{
-  double best = PETSC_MAX_REAL;
-
-  for (PetscInt r = 0; r < repetitions; r++) best = PetscMin(best, Triad(b));
-  return 3. * sizeof(PetscReal) * (double)b->triad_length / best;
+  b->bandwidth = PetscMax(b->bandwidth, 3. * sizeof(PetscReal) * (double)b->triad_length / (MPI_Wtime() - begin));
 }
 
 /* Four times the last cache per array, unless the user says otherwise. */
@@ -267,7 +260,7 @@ static PetscErrorCode TimeKernel(Bench *b, const Kernel *kernel, PetscInt repeti
   PetscFunctionBegin;
   *seconds = PETSC_MAX_REAL;
   for (PetscInt r = 0; r < repetitions; r++) {
-    (void)Triad(b);
+    Triad(b);
     const double begin = MPI_Wtime();
     PetscCall(kernel->run(b));
     *seconds = PetscMin(*seconds, MPI_Wtime() - begin);
@@ -275,33 +268,46 @@ static PetscErrorCode TimeKernel(Bench *b, const Kernel *kernel, PetscInt repeti
   PetscFunctionReturn(0);
 }
 
-/* All kernels with the present number of threads, on the screen and in `rows`. */
+/* One kernel's figures, on the screen and as a row of the file. */
+static PetscErrorCode Report(const Bench *b, const Kernel *kernel, double seconds, cJSON *rows)
+{
+  const double bytes = Bytes(b, &kernel->traffic), cells = b->mesh->num_local_cells;
+  const double share = bytes / seconds / b->bandwidth;
+  cJSON *const row = cJSON_CreateObject();
+
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-30s %10.2f %10.1f %8.2f %10.1f\n", kernel->name, 1e9 * seconds / cells,
+                        bytes / cells, 1e-9 * bytes / seconds, 100. * share));
+  cJSON_AddItemToArray(rows, row);
+  (void)cJSON_AddStringToObject(row, "kernel", kernel->name);
+  (void)cJSON_AddNumberToObject(row, "threads", omp_get_max_threads());
+  (void)cJSON_AddNumberToObject(row, "triad_bytes_per_second", b->bandwidth);
+  (void)cJSON_AddNumberToObject(row, "seconds", seconds);
+  (void)cJSON_AddNumberToObject(row, "ns_per_cell", 1e9 * seconds / cells);
+  (void)cJSON_AddNumberToObject(row, "bytes_per_cell", bytes / cells);
+  (void)cJSON_AddNumberToObject(row, "share_of_triad", share);
+  PetscFunctionReturn(0);
+}
+
+/* All kernels with the present number of threads. The load tells whether the figures are worth anything. */
 static PetscErrorCode RunAll(Bench *b, const Options *options, cJSON *rows)
 {
   const int threads = omp_get_max_threads();
-  const double bandwidth = Bandwidth(b, options->repetitions);
+  double seconds[NUM_KERNELS], load = -1.;
 
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n%d thread%s: triad %.1f GB/s\n", threads, threads > 1 ? "s" : "",
-                        1e-9 * bandwidth));
+  b->bandwidth = 0.;
+  for (int k = 0; k < NUM_KERNELS; k++) {
+    if (strstr(kernels[k].name, options->only))
+      PetscCall(TimeKernel(b, &kernels[k], options->repetitions, &seconds[k]));
+  }
+  (void)getloadavg(&load, 1);
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n%d thread%s: triad %.1f GB/s; load %.1f on %ld cores\n", threads,
+                        threads > 1 ? "s" : "", 1e-9 * b->bandwidth, load, sysconf(_SC_NPROCESSORS_ONLN)));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-30s %10s %10s %8s %10s\n", "kernel", "ns/cell", "bytes/cell", "GB/s",
                         "% of triad"));
   for (int k = 0; k < NUM_KERNELS; k++) {
-    const double bytes = Bytes(b, &kernels[k].traffic), cells = b->mesh->num_local_cells;
-    double seconds;
-    PetscCall(TimeKernel(b, &kernels[k], options->repetitions, &seconds));
-    const double share = bytes / seconds / bandwidth;
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-30s %10.2f %10.1f %8.2f %10.1f\n", kernels[k].name,
-                          1e9 * seconds / cells, bytes / cells, 1e-9 * bytes / seconds, 100. * share));
-    cJSON *const row = cJSON_CreateObject();
-    cJSON_AddItemToArray(rows, row);
-    (void)cJSON_AddStringToObject(row, "kernel", kernels[k].name);
-    (void)cJSON_AddNumberToObject(row, "threads", threads);
-    (void)cJSON_AddNumberToObject(row, "triad_bytes_per_second", bandwidth);
-    (void)cJSON_AddNumberToObject(row, "seconds", seconds);
-    (void)cJSON_AddNumberToObject(row, "ns_per_cell", 1e9 * seconds / cells);
-    (void)cJSON_AddNumberToObject(row, "bytes_per_cell", bytes / cells);
-    (void)cJSON_AddNumberToObject(row, "share_of_triad", share);
+    if (strstr(kernels[k].name, options->only)) PetscCall(Report(b, &kernels[k], seconds[k], rows));
   }
   PetscFunctionReturn(0);
 }
@@ -329,6 +335,8 @@ static PetscErrorCode AskOptions(Options *options)
   PetscCall(PetscOptionsInt("-n", "vertices, about", NULL, options->n, &options->n, NULL));
   PetscCall(PetscOptionsInt("-repetitions", "the best of so many counts", NULL, options->repetitions,
                             &options->repetitions, NULL));
+  PetscCall(PetscOptionsString("-only", "kernels with this in their name", NULL, options->only, options->only,
+                               sizeof(options->only), NULL));
   PetscCall(PetscOptionsInt("-max_threads", "1, 2, 4, ... and this many threads", NULL, options->max_threads,
                             &options->max_threads, NULL));
   PetscCall(PetscOptionsInt("-triad_mib", "MiB per array of the triad (0: four times the last cache)", NULL,

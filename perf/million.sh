@@ -26,7 +26,7 @@ fi
 
 result=$folder/result-$vertices
 code=0
-echo "load before the run: $(cut -d' ' -f1-3 /proc/loadavg) on $(nproc) cores"
+echo "load before the run: $(cut -d' ' -f1-3 /proc/loadavg) on $(nproc --all) cores"
 mpirun -n "$ranks" --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 \
   "$program" disk "$mesh" -o "$result.h5" -summary "$result.json" -history "$result.csv" -max_it 6 "$@" || code=$?
 echo "load after the run: $(cut -d' ' -f1-3 /proc/loadavg)"
