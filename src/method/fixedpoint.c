@@ -95,7 +95,7 @@ static PetscErrorCode StepOnDisk(EqmSolver solver)
   const PetscInt n = mesh->num_owned;
 
   PetscFunctionBegin;
-  PetscCall(EqmGroupFactor(solver, fp->weights, fp->group));
+  PetscCall(EqmGroupFactor(solver, fp->weights, fp->group, NULL));
   PetscCall(MoveBoundary(solver));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = fp->group[v] == 1 ? solver->place.x[2 * v + c] : 0.;

@@ -36,6 +36,9 @@ typedef struct {
   PetscInt ncg_refresh;
   PetscEnum ncg_beta; /* an EqmNcgBeta */
   PetscBool ncg_guard;
+  /* lbfgs, rgd */
+  PetscInt lbfgs_refresh, lbfgs_memory;
+  PetscEnum rgd_line_search; /* an EqmRgdLineSearch */
 } EqmSettings;
 
 struct _p_EqmSolver {
@@ -66,7 +69,7 @@ struct _p_EqmSolver {
   char message[EQM_MESSAGE_MAX];
 };
 
-PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLm;
+PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm;
 PETSC_INTERN PetscErrorCode EqmMethodFind(const char *name, const EqmMethod **method);
 PETSC_INTERN PetscErrorCode EqmMethodNames(char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
@@ -83,8 +86,10 @@ PETSC_INTERN PetscErrorCode EqmMonitorUnfolded(EqmSolver solver, const char *whe
 /* ---- scalar Laplacians on groups of vertices (src/start/dirichlet.c) */
 enum { EQM_GROUP_FIXED = -1 };
 /* Factor the Laplacian with the given weights (3 per local cell), restricted to groups: entries between vertices of
-   different groups are dropped, rows of fixed vertices are identities. `group` per local vertex. Collective. */
-PETSC_INTERN PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group);
+   different groups are dropped, rows of fixed vertices are identities. `group` per local vertex; `mass` per local cell
+   or NULL goes to the diagonal. Collective. */
+PETSC_INTERN PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                                           const PetscReal *mass);
 /* Solve with the factored Laplacian; columns of num_owned each. Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *columns);
 /* Solve L z = 0 on the vertices that are not held, in `width` columns: z (per local vertex, `width` each) holds the
@@ -95,6 +100,15 @@ PETSC_INTERN PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weig
    `weights`. `to` gets the result; ghosts up to date. Collective. */
 PETSC_INTERN PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const EqmPlace *from,
                                            EqmPlace *to);
+
+/* ---- the Laplacian metric (src/method/metric.c): turns gradients of the authalic energy into directions */
+typedef struct _p_EqmMetric *EqmMetric;
+PETSC_INTERN PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *metric);
+PETSC_INTERN PetscErrorCode EqmMetricDestroy(EqmMetric *metric);
+/* Take the stretch Laplacian of the present map. Counts a factorisation. Collective. */
+PETSC_INTERN PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric);
+/* h = M^-1 g; both in degrees of freedom at the present map; may be the same. Collective. */
+PETSC_INTERN PetscErrorCode EqmMetricApply(EqmSolver solver, EqmMetric metric, Vec g, Vec h);
 
 /* ---- first maps (src/start/start.c) */
 PETSC_INTERN PetscErrorCode EqmStartFind(const char *target, const char *name);

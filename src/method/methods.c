@@ -1,7 +1,8 @@
 /* The table of methods. */
 #include "method/method.h"
 
-static const EqmMethod *const methods[] = {&EqmMethodFixedPoint, &EqmMethodNcg, &EqmMethodLm};
+static const EqmMethod *const methods[] = {&EqmMethodFixedPoint, &EqmMethodNcg, &EqmMethodLbfgs, &EqmMethodRgd,
+                                           &EqmMethodLm};
 enum { NUM_METHODS = sizeof(methods) / sizeof(methods[0]) };
 
 /* The method of a name; "auto" is the best known for the target. Errors: EQM_ERR_USAGE. Collective. */

@@ -8,49 +8,11 @@ static const char *const ncg_betas[] = {"fletcher-reeves", "polak-ribiere", "hag
 
 typedef struct {
   Vec gradient, preconditioned, direction, old_gradient, old_preconditioned, trial_gradient;
-  PetscReal *weights, *columns, *image;
-  signed char *group;
+  EqmMetric metric;
+  PetscReal *image;
   EqmPlace trial;
   PetscReal alpha;
 } Ncg;
-
-/* M = blkdiag(L_II, L_BB) of the present map (000 section 3.2): one factor, for the two blocks do not touch. */
-static PetscErrorCode RefreshPreconditioner(EqmSolver solver)
-{
-  Ncg *const ncg = solver->data;
-
-  PetscFunctionBegin;
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, ncg->weights));
-  PetscCall(EqmGroupFactor(solver, ncg->weights, ncg->group));
-  PetscFunctionReturn(0);
-}
-
-/* h = M^-1 g, degree of freedom by degree of freedom: angles and slides go with the first coordinate. */
-static PetscErrorCode Precondition(EqmSolver solver, Vec g, Vec h)
-{
-  Ncg *const ncg = solver->data;
-  const EqmDomain domain = solver->domain;
-  const PetscInt n = solver->mesh->num_owned;
-  const PetscScalar *from;
-  PetscScalar *to;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(g, &from));
-  for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt k = 0; k < 2; k++) {
-      ncg->columns[k * n + v] = k < domain->dof_count[v] ? from[domain->dof_start[v] - domain->dof_first + k] : 0.;
-    }
-  }
-  PetscCall(VecRestoreArrayRead(g, &from));
-  PetscCall(EqmGroupSolve(solver, 2, ncg->columns));
-  PetscCall(VecGetArrayWrite(h, &to));
-  for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt k = 0; k < domain->dof_count[v]; k++)
-      to[domain->dof_start[v] - domain->dof_first + k] = ncg->columns[k * n + v];
-  }
-  PetscCall(VecRestoreArrayWrite(h, &to));
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode SetUp(EqmSolver solver)
 {
@@ -60,11 +22,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscFunctionBegin;
   PetscCall(PetscNew(&ncg));
   solver->data = ncg;
-  PetscCall(PetscMalloc4(3 * mesh->num_local_cells, &ncg->weights, 2 * mesh->num_owned, &ncg->columns, mesh->num_local,
-                         &ncg->group, mesh->num_local_cells, &ncg->image));
-  for (PetscInt v = 0; v < mesh->num_local; v++) {
-    ncg->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
-  }
+  PetscCall(EqmMetricCreate(solver, &ncg->metric));
+  PetscCall(PetscMalloc1(mesh->num_local_cells, &ncg->image));
   PetscCall(EqmDomainCreateVec(solver->domain, &ncg->gradient));
   PetscCall(VecDuplicate(ncg->gradient, &ncg->preconditioned));
   PetscCall(VecDuplicate(ncg->gradient, &ncg->direction));
@@ -72,10 +31,10 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(VecDuplicate(ncg->gradient, &ncg->old_preconditioned));
   PetscCall(VecDuplicate(ncg->gradient, &ncg->trial_gradient));
   PetscCall(EqmPlaceCreate(solver->domain, &ncg->trial));
-  PetscCall(RefreshPreconditioner(solver));
+  PetscCall(EqmMetricRefresh(solver, ncg->metric));
   PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, ncg->gradient));
   PetscCall(VecNorm(ncg->gradient, NORM_2, &solver->gradient_norm));
-  PetscCall(Precondition(solver, ncg->gradient, ncg->preconditioned));
+  PetscCall(EqmMetricApply(solver, ncg->metric, ncg->gradient, ncg->preconditioned));
   PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
   PetscCall(VecScale(ncg->direction, -1.));
   ncg->alpha =
@@ -88,7 +47,8 @@ static PetscErrorCode Destroy(EqmSolver solver)
   Ncg *const ncg = solver->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree4(ncg->weights, ncg->columns, ncg->group, ncg->image));
+  PetscCall(EqmMetricDestroy(&ncg->metric));
+  PetscCall(PetscFree(ncg->image));
   PetscCall(VecDestroy(&ncg->gradient));
   PetscCall(VecDestroy(&ncg->preconditioned));
   PetscCall(VecDestroy(&ncg->direction));
@@ -223,8 +183,8 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   PetscCall(AcceptTrial(solver, alpha, energy));
   PetscCall(VecNorm(ncg->gradient, NORM_2, &solver->gradient_norm));
   const PetscBool refreshed = (PetscBool)(refresh > 0 && (solver->iteration + 1) % refresh == 0);
-  if (refreshed) PetscCall(RefreshPreconditioner(solver));
-  PetscCall(Precondition(solver, ncg->gradient, ncg->preconditioned));
+  if (refreshed) PetscCall(EqmMetricRefresh(solver, ncg->metric));
+  PetscCall(EqmMetricApply(solver, ncg->metric, ncg->gradient, ncg->preconditioned));
   if (!refreshed) PetscCall(ComputeBeta(solver, old_product, &beta));
   PetscCall(VecAXPBY(ncg->direction, -1., beta, ncg->preconditioned));
   *outcome = EQM_STEP_TAKEN;
@@ -249,6 +209,7 @@ const EqmMethod EqmMethodNcg = {
     .name = "ncg",
     .purpose = "preconditioned nonlinear conjugate gradients (000 Algorithm 1)",
     .default_start = "fixed-point",
+    .sphere_start = "guarded",
     .default_max_it = 100,
     .default_energy_rtol = 1e-4,
     .options = Options,

@@ -13,7 +13,9 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
                             .gradient_tol = 1e-14,
                             .balance = -1.,
                             .stagnation = 5,
-                            .ncg_guard = PETSC_TRUE};
+                            .ncg_guard = PETSC_TRUE,
+                            .lbfgs_refresh = 25,
+                            .lbfgs_memory = 10};
   PetscFunctionReturn(0);
 }
 
@@ -34,7 +36,7 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
   EqmSettings *const set = &solver->settings;
   char methods[EQM_MESSAGE_MAX], starts[EQM_MESSAGE_MAX];
   PetscInt num_corners = 4;
-  static const EqmMethod *const with_options[] = {&EqmMethodNcg};
+  static const EqmMethod *const with_options[] = {&EqmMethodNcg, &EqmMethodLbfgs, &EqmMethodRgd};
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(methods, "the iteration: ", sizeof(methods)));

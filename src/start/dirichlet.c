@@ -5,19 +5,20 @@ typedef struct {
   EqmMesh mesh;
   const PetscReal *weights;
   const signed char *group;
+  const PetscReal *mass; /* per cell, added to the diagonals of its corners in thirds; NULL: none */
 } GroupMatrix;
 
 static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
 {
   const GroupMatrix *const g = context;
   const PetscInt *const v = g->mesh->cells + 3 * cell;
-  const PetscReal *const w = g->weights + 3 * cell;
+  const PetscReal *const w = g->weights + 3 * cell, mass = g->mass ? g->mass[cell] / 3. : 0.;
 
   for (PetscInt a = 0; a < 3; a++) {
     const PetscBool fixed = (PetscBool)(g->group[v[a]] == EQM_GROUP_FIXED);
     for (PetscInt b = 0; b < 3; b++) {
       if (a == b)
-        matrix[4 * a] = fixed ? 1. : w[(a + 1) % 3] + w[(a + 2) % 3];
+        matrix[4 * a] = fixed ? 1. : w[(a + 1) % 3] + w[(a + 2) % 3] + mass;
       else
         matrix[3 * a + b] = fixed || g->group[v[a]] != g->group[v[b]] ? 0. : -w[3 - a - b];
     }
@@ -39,9 +40,10 @@ static PetscErrorCode MakeScalar(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group)
+PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                              const PetscReal *mass)
 {
-  GroupMatrix matrix = {solver->mesh, weights, group};
+  GroupMatrix matrix = {solver->mesh, weights, group, mass};
   PetscBool success;
 
   PetscFunctionBegin;
@@ -85,7 +87,7 @@ PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const si
   for (PetscInt v = 0; v < n; v++) {
     for (PetscInt k = 0; k < width; k++) columns[k * n + v] = group[v] == EQM_GROUP_FIXED ? 0. : -pull[width * v + k];
   }
-  PetscCall(EqmGroupFactor(solver, weights, group));
+  PetscCall(EqmGroupFactor(solver, weights, group, NULL));
   PetscCall(EqmGroupSolve(solver, width, columns));
   for (PetscInt v = 0; v < n; v++) {
     for (PetscInt k = 0; k < width && group[v] != EQM_GROUP_FIXED; k++) z[width * v + k] = columns[k * n + v];

@@ -15,6 +15,7 @@ struct StartRow {
 
 static PetscErrorCode StartInPlane(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartOnSphere(EqmSolver, const StartRow *, PetscInt);
+static PetscErrorCode StartDescending(EqmSolver, const StartRow *, PetscInt);
 
 static const StartRow starts[] = {
     {"harmonic", "boundary by arc length, interior by cotangent weights", PETSC_FALSE, StartInPlane,
@@ -29,6 +30,8 @@ static const StartRow starts[] = {
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"fixed-point", "linear, then fixed-point steps (001 Algorithm 2)", PETSC_TRUE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 10},
+    {"descending", "linear, then fixed-point steps for as long as the energy falls, seven at most (001 section 6.3)",
+     PETSC_TRUE, StartDescending, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 7},
     {"guarded", "linear, with fixed-point steps and unfolding where it folds", PETSC_TRUE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 15},
 };
@@ -193,6 +196,32 @@ static PetscErrorCode StartOnSphere(EqmSolver solver, const StartRow *row, Petsc
   } else {
     for (PetscInt k = 0; k < steps; k++) PetscCall(EqmSphereFixedPointStep(solver, k, weights));
   }
+  PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
+
+/* Fixed-point steps until the energy rises; the map before the rise, unfolded. */
+static PetscErrorCode StartDescending(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  PetscReal *weights, before;
+  EqmPlace last;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
+  PetscCall(EqmPlaceCreate(solver->domain, &last));
+  PetscCall(EqmSphereLinear(solver));
+  PetscCall(EqmSolverLook(solver));
+  for (PetscInt k = 0; k < steps; k++) {
+    before = solver->totals.energy;
+    PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &last));
+    PetscCall(EqmSphereFixedPointStep(solver, k, weights));
+    PetscCall(EqmSolverLook(solver));
+    if (solver->totals.energy < before) continue;
+    PetscCall(EqmPlaceCopy(solver->domain, &last, &solver->place));
+    break;
+  }
+  PetscCall(EqmSphereUnfold(solver, &solver->unfolded_from, &solver->unfolded_to));
+  PetscCall(EqmPlaceDestroy(&last));
   PetscCall(PetscFree(weights));
   PetscFunctionReturn(0);
 }

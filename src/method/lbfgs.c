@@ -1,0 +1,136 @@
+/* L-BFGS on the normalised authalic energy with the Laplacian metric as initial inverse Hessian. The frames of the
+   domain carry steps and gradients along: the recursion is the Euclidean one on every domain. */
+#include "method/method.h"
+#include "method/pairs.h"
+
+typedef struct {
+  EqmMetric metric;
+  EqmPairs pairs;
+  PetscReal *image;
+  EqmPlace trial;
+  Vec gradient, trial_gradient, direction;
+} Lbfgs;
+
+static PetscErrorCode SetUp(EqmSolver solver)
+{
+  Lbfgs *lb;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&lb));
+  solver->data = lb;
+  PetscCall(EqmMetricCreate(solver, &lb->metric));
+  PetscCall(EqmPlaceCreate(solver->domain, &lb->trial));
+  PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &lb->image));
+  PetscCall(EqmDomainCreateVec(solver->domain, &lb->gradient));
+  PetscCall(VecDuplicate(lb->gradient, &lb->trial_gradient));
+  PetscCall(VecDuplicate(lb->gradient, &lb->direction));
+  PetscCall(EqmPairsCreate(lb->gradient, solver->settings.lbfgs_memory, &lb->pairs));
+  PetscCall(EqmMetricRefresh(solver, lb->metric));
+  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, lb->gradient));
+  PetscCall(VecNorm(lb->gradient, NORM_2, &solver->gradient_norm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(EqmSolver solver)
+{
+  Lbfgs *const lb = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMetricDestroy(&lb->metric));
+  PetscCall(EqmPairsDestroy(&lb->pairs));
+  PetscCall(EqmPlaceDestroy(&lb->trial));
+  PetscCall(PetscFree(lb->image));
+  PetscCall(VecDestroy(&lb->gradient));
+  PetscCall(VecDestroy(&lb->trial_gradient));
+  PetscCall(VecDestroy(&lb->direction));
+  PetscCall(PetscFree(solver->data));
+  PetscFunctionReturn(0);
+}
+
+/* q <- A/2 M^-1 q: near the minimum the energy's Hessian is about 2/A L_S. */
+static PetscErrorCode ApplyMetric(void *context, Vec q)
+{
+  const EqmSolver solver = context;
+  Lbfgs *const lb = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMetricApply(solver, lb->metric, q, q));
+  PetscCall(VecScale(q, .5 * solver->domain->target_measure));
+  PetscFunctionReturn(0);
+}
+
+/* Armijo, with the parabola's minimum as the next guess; leaves the trial's map, energy and gradient. `t` 0: no
+ * decrease. */
+static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t, PetscReal *energy)
+{
+  Lbfgs *const lb = solver->data;
+  enum { MOST_TRIALS = 25 };
+
+  PetscFunctionBegin;
+  *t = 1.;
+  for (PetscInt trial = 0; trial < MOST_TRIALS; trial++) {
+    PetscBool in_order;
+    PetscCall(EqmDomainMove(solver->domain, &solver->place, *t, lb->direction, &lb->trial));
+    PetscCall(EqmDomainBoundaryInOrder(solver->domain, &lb->trial, &in_order));
+    PetscCall(EqmAuthalicEnergy(solver->domain, &lb->trial, lb->image, energy, lb->trial_gradient));
+    const PetscReal change = *energy - solver->objective;
+    if (in_order && change <= 1e-4 * *t * slope) PetscFunctionReturn(0);
+    *t = in_order ? PetscMax(.1 * *t, PetscMin(.5 * *t, -.5 * *t * *t * slope / (change - *t * slope))) : .5 * *t;
+  }
+  *t = 0.;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+{
+  Lbfgs *const lb = solver->data;
+  const PetscInt refresh = solver->settings.lbfgs_refresh;
+  PetscReal slope, t, energy;
+
+  PetscFunctionBegin;
+  if (refresh > 0 && solver->iteration > 0 && solver->iteration % refresh == 0)
+    PetscCall(EqmMetricRefresh(solver, lb->metric));
+  PetscCall(VecCopy(lb->gradient, lb->direction));
+  PetscCall(EqmPairsDirection(lb->pairs, ApplyMetric, solver, lb->direction));
+  PetscCall(VecScale(lb->direction, -1.));
+  PetscCall(VecDot(lb->gradient, lb->direction, &slope));
+  *outcome = EQM_STEP_STALLED;
+  if (!(slope < 0.)) PetscFunctionReturn(0);
+  PetscCall(Backtrack(solver, slope, &t, &energy));
+  if (t == 0.) PetscFunctionReturn(0);
+  PetscCall(EqmPairsAdd(lb->pairs, t, lb->direction, lb->gradient, lb->trial_gradient));
+  PetscCall(VecCopy(lb->trial_gradient, lb->gradient));
+  PetscCall(EqmPlaceCopy(solver->domain, &lb->trial, &solver->place));
+  PetscCall(PetscArraycpy(solver->image, lb->image, solver->mesh->num_local_cells));
+  PetscCall(EqmSolverSum(solver));
+  PetscCall(VecNorm(lb->gradient, NORM_2, &solver->gradient_norm));
+  solver->objective = energy;
+  solver->step_length = t;
+  *outcome = EQM_STEP_TAKEN;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  EqmSettings *const set = &solver->settings;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsBoundedInt("-lbfgs_refresh", "lbfgs: renew the metric every so many iterations; 0: never",
+                                   "EqmSolverSetFromOptions", set->lbfgs_refresh, &set->lbfgs_refresh, NULL, 0));
+  PetscCall(PetscOptionsBoundedInt("-lbfgs_memory", "lbfgs: how many steps are remembered", "EqmSolverSetFromOptions",
+                                   set->lbfgs_memory, &set->lbfgs_memory, NULL, 1));
+  PetscFunctionReturn(0);
+}
+
+const EqmMethod EqmMethodLbfgs = {
+    .name = "lbfgs",
+    .purpose = "limited-memory quasi-Newton steps in the Laplacian metric: scalar factorisations only",
+    .default_start = "guarded",
+    .sphere_start = "guarded",
+    .default_max_it = 200,
+    .default_energy_rtol = 1e-3,
+    .options = Options,
+    .set_up = SetUp,
+    .step = Step,
+    .destroy = Destroy,
+};

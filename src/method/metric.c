@@ -1,0 +1,100 @@
+/* The stretch Laplacian as a metric for gradients. In the plane M = blkdiag(L_II, L_BB) (000 section 3.2), degree of
+   freedom by degree of freedom, angles and slides with the first coordinate. On the sphere the gradient is a field in
+   space: each coordinate is solved with L_S + .1 mass and the result projected back (METHODS section 5). */
+#include "method/method.h"
+
+struct _p_EqmMetric {
+  PetscReal *weights, *mass, *columns, *ambient;
+  signed char *group;
+};
+
+PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
+{
+  const EqmMesh mesh = solver->mesh;
+  const PetscInt dim = solver->domain->dim;
+  EqmMetric metric;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&metric));
+  PetscCall(PetscMalloc5(3 * mesh->num_local_cells, &metric->weights, mesh->num_local_cells, &metric->mass,
+                         dim * mesh->num_owned, &metric->columns, dim * mesh->num_local, &metric->ambient,
+                         mesh->num_local, &metric->group));
+  for (PetscInt v = 0; v < mesh->num_local; v++) {
+    metric->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
+  }
+  *out = metric;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
+{
+  PetscFunctionBegin;
+  if (!*metric) PetscFunctionReturn(0);
+  PetscCall(PetscFree5((*metric)->weights, (*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
+  PetscCall(PetscFree(*metric));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric)
+{
+  const PetscBool sphere = solver->domain->curved_image;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, metric->weights));
+  if (sphere) {
+    PetscCall(EqmImageMeasure(solver->domain, &solver->place, metric->mass));
+    for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) metric->mass[c] *= .1 * solver->domain->target_measure;
+  }
+  PetscCall(EqmGroupFactor(solver, metric->weights, metric->group, sphere ? metric->mass : NULL));
+  PetscFunctionReturn(0);
+}
+
+/* One column per coordinate in space. */
+static PetscErrorCode ApplyInSpace(EqmSolver solver, EqmMetric metric, Vec g, Vec h)
+{
+  const PetscInt n = solver->mesh->num_owned, dim = solver->domain->dim;
+
+  PetscFunctionBegin;
+  PetscCall(EqmDomainExpand(solver->domain, &solver->place, g, metric->ambient));
+  for (PetscInt k = 0; k < dim * n; k++) metric->columns[(k % dim) * n + k / dim] = metric->ambient[k];
+  PetscCall(EqmGroupSolve(solver, dim, metric->columns));
+  for (PetscInt k = 0; k < dim * n; k++) metric->ambient[k] = metric->columns[(k % dim) * n + k / dim];
+  PetscCall(EqmDomainProject(solver->domain, &solver->place, metric->ambient, h));
+  PetscFunctionReturn(0);
+}
+
+/* One column per degree of freedom of a vertex. */
+static PetscErrorCode ApplyByDof(EqmSolver solver, EqmMetric metric, Vec g, Vec h)
+{
+  const EqmDomain domain = solver->domain;
+  const PetscInt n = solver->mesh->num_owned;
+  const PetscScalar *from;
+  PetscScalar *to;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(g, &from));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < 2; k++) {
+      metric->columns[k * n + v] = k < domain->dof_count[v] ? from[domain->dof_start[v] - domain->dof_first + k] : 0.;
+    }
+  }
+  PetscCall(VecRestoreArrayRead(g, &from));
+  PetscCall(EqmGroupSolve(solver, 2, metric->columns));
+  PetscCall(VecGetArrayWrite(h, &to));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < domain->dof_count[v]; k++)
+      to[domain->dof_start[v] - domain->dof_first + k] = metric->columns[k * n + v];
+  }
+  PetscCall(VecRestoreArrayWrite(h, &to));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricApply(EqmSolver solver, EqmMetric metric, Vec g, Vec h)
+{
+  PetscFunctionBegin;
+  if (solver->domain->curved_image)
+    PetscCall(ApplyInSpace(solver, metric, g, h));
+  else
+    PetscCall(ApplyByDof(solver, metric, g, h));
+  PetscFunctionReturn(0);
+}
