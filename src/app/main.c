@@ -1,6 +1,7 @@
 /* equimap COMMAND ARGUMENTS -options: find the command, hand over, turn its end into an exit code. */
 #include "app.h"
 #include <omp.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -206,6 +207,7 @@ int main(int argc, char **argv)
 
   ParseCommandLine(&argc, argv, &line, &version);
   if (EqmInitialize(&argc, &argv)) return EQM_STATUS_INTERNAL;
+  (void)signal(SIGPIPE, SIG_DFL); /* equimap check MESH | head ends like any other program, without PETSc's trace */
   if (version) {
     error = PetscPrintf(PETSC_COMM_WORLD, "equimap %s (commit %s, PETSc %d.%d.%d)\n", EqmVersion(), EqmCommit(),
                         PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);

@@ -27,6 +27,25 @@ static PetscErrorCode Print(const EqmDistortion *d, PetscBool surface)
   PetscFunctionReturn(0);
 }
 
+/* What has no area or volume, or no place, has no ratio. */
+static PetscErrorCode CheckMeasurable(EqmSoup soup)
+{
+  EqmDiagnosis diagnosis;
+  PetscInt64 damaged;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupDiagnose(soup, &diagnosis));
+  damaged = diagnosis.finding[EQM_FINDING_NOT_FINITE].count + diagnosis.finding[EQM_FINDING_BAD_INDEX].count +
+            diagnosis.finding[EQM_FINDING_DEGENERATE_CELL].count;
+  if (damaged) {
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_MESH,
+            "no map of %s can be measured: it has %" PetscInt64_FMT
+            " flat or damaged cells or vertices; equimap check %s names them",
+            soup->file, damaged, soup->file);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Measure and report; the map's status: folds or fine. */
 static PetscErrorCode Measure(const EqmCommandLine *line, const char *density, const char *summary, EqmStatus *status)
 {
@@ -40,6 +59,7 @@ static PetscErrorCode Measure(const EqmCommandLine *line, const char *density, c
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
   if (density[0]) PetscCall(EqmSoupReadDensity(soup, density));
+  PetscCall(CheckMeasurable(soup));
   PetscCall(EqmMapRead(soup, line->argument[1], &map));
   PetscCall(EqmMeshCreate(soup, ledger, &mesh));
   PetscCall(PetscMalloc1(map->dim * mesh->num_local, &x));
