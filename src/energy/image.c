@@ -3,7 +3,8 @@
 #include "energy/kernel.h"
 #include "energy/loops.h"
 
-/* Run a loop compiled for its measure. */
+/* Run a loop compiled for its measure. To stand inside the parallel region: the compiler makes a function of its own of
+   the region before it inlines anything, and a constant outside is a variable in there. */
 #define FOR_MEASURE(kind, loop, ...)                                                                                   \
   do {                                                                                                                 \
     if ((kind) == EQM_MEASURE_AREA2)                                                                                   \
@@ -14,13 +15,13 @@
       loop(EQM_MEASURE_HALF_DET, __VA_ARGS__);                                                                         \
   } while (0)
 
-static inline __attribute__((always_inline)) void MeasureLoop(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
-                                                              PetscReal *a)
+static inline __attribute__((always_inline)) void MeasureRange(EqmMeasureKind kind, EqmMesh mesh, PetscInt b,
+                                                               const PetscReal *x, PetscReal *a)
 {
   const PetscInt dim = EqmMeasureDim(kind), *const cells = mesh->cells;
+  const PetscInt last = EqmRangeStart(mesh->num_local_cells, b + 1);
 
-#pragma omp parallel for schedule(static)
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+  for (PetscInt c = EqmRangeStart(mesh->num_local_cells, b); c < last; c++) {
     a[c] = EqmMeasureValue(kind, x + dim * cells[3 * c], x + dim * cells[3 * c + 1], x + dim * cells[3 * c + 2]);
   }
 }
@@ -31,7 +32,8 @@ PetscErrorCode EqmImageMeasureOf(EqmDomain domain, EqmMeasureKind kind, const Eq
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
-  FOR_MEASURE(kind, MeasureLoop, mesh, place->x, a);
+#pragma omp parallel for schedule(static)
+  for (PetscInt b = 0; b < EQM_NUM_RANGES; b++) FOR_MEASURE(kind, MeasureRange, mesh, b, place->x, a);
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
   PetscFunctionReturn(0);
 }
@@ -55,40 +57,71 @@ PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *place, PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* Sums of one range of owned cells. */
+/* Sums of one range of owned cells. Each runs in LANES interleaved parts, for one addition must wait for the one
+   before; the parts are added in a fixed order. */
+enum { LANES = 4 };
 typedef struct {
   PetscReal total, ratio, squares, weighted, smallest;
   PetscInt64 folds;
 } RangeSums;
 
+static PetscReal TotalOfRange(const PetscReal *a, PetscInt first, PetscInt last)
+{
+  PetscReal part[LANES] = {0.};
+  PetscInt c = first;
+
+  for (; c + LANES <= last; c += LANES) {
+    for (PetscInt l = 0; l < LANES; l++) part[l] += a[c + l];
+  }
+  for (; c < last; c++) part[0] += a[c];
+  return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
 static PetscErrorCode SumTotal(EqmMesh mesh, const PetscReal *a, PetscReal *total)
 {
   PetscReal part[EQM_NUM_RANGES], sum = 0.;
+  const PetscInt n = mesh->num_owned_cells;
 
   PetscFunctionBegin;
 #pragma omp parallel for schedule(static)
-  for (PetscInt b = 0; b < EQM_NUM_RANGES; b++) {
-    part[b] = 0.;
-    for (PetscInt c = EqmRangeStart(mesh->num_owned_cells, b); c < EqmRangeStart(mesh->num_owned_cells, b + 1); c++)
-      part[b] += a[c];
-  }
+  for (PetscInt b = 0; b < EQM_NUM_RANGES; b++) part[b] = TotalOfRange(a, EqmRangeStart(n, b), EqmRangeStart(n, b + 1));
   for (PetscInt b = 0; b < EQM_NUM_RANGES; b++) sum += part[b];
   PetscCall(MPIU_Allreduce(&sum, total, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
   PetscFunctionReturn(0);
 }
 
+/* `count` <= LANES cells from c on, one to each part. */
+static inline void SumLanes(const PetscReal *w, const PetscReal *a, PetscReal total, PetscInt count,
+                            PetscReal part[4][LANES], PetscInt64 folds[LANES])
+{
+  for (PetscInt l = 0; l < count; l++) {
+    const PetscReal ratio = a[l] / (w[l] * total), difference = ratio - 1.;
+    part[0][l] += difference;
+    part[1][l] += difference * difference;
+    part[2][l] += w[l] * (difference * difference);
+    part[3][l] = ratio < part[3][l] ? ratio : part[3][l];
+    folds[l] += !(a[l] > 0.);
+  }
+}
+
 /* Second pass, about the mean: every square is of a difference from one, so nothing cancels near the minimum. */
 static void SumRange(EqmMesh mesh, const PetscReal *a, PetscReal total, PetscInt b, RangeSums *sums)
 {
-  *sums = (RangeSums){.smallest = PETSC_MAX_REAL};
-  for (PetscInt c = EqmRangeStart(mesh->num_owned_cells, b); c < EqmRangeStart(mesh->num_owned_cells, b + 1); c++) {
-    const PetscReal w = mesh->weight[c], stretch = a[c] / w, difference = stretch / total - 1.;
-    sums->ratio += difference;
-    sums->squares += difference * difference;
-    sums->weighted += w * difference * difference;
-    sums->smallest = PetscMin(sums->smallest, stretch);
-    sums->folds += !(a[c] > 0.);
+  const PetscInt last = EqmRangeStart(mesh->num_owned_cells, b + 1);
+  PetscReal part[4][LANES] = {{0.}, {0.}, {0.}, {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL}};
+  PetscInt64 folds[LANES] = {0};
+
+  for (PetscInt c = EqmRangeStart(mesh->num_owned_cells, b); c < last; c += LANES) {
+    if (c + LANES <= last)
+      SumLanes(mesh->weight + c, a + c, total, LANES, part, folds);
+    else
+      SumLanes(mesh->weight + c, a + c, total, last - c, part, folds);
   }
+  *sums = (RangeSums){.ratio = (part[0][0] + part[0][1]) + (part[0][2] + part[0][3]),
+                      .squares = (part[1][0] + part[1][1]) + (part[1][2] + part[1][3]),
+                      .weighted = (part[2][0] + part[2][1]) + (part[2][2] + part[2][3]),
+                      .smallest = total * PetscMin(PetscMin(part[3][0], part[3][1]), PetscMin(part[3][2], part[3][3])),
+                      .folds = folds[0] + folds[1] + folds[2] + folds[3]};
 }
 
 PetscErrorCode EqmImageSum(EqmMesh mesh, const PetscReal *a, EqmImageTotals *totals)
@@ -139,11 +172,26 @@ static inline __attribute__((always_inline)) void GradientBlock(EqmMeasureKind k
   }
 }
 
-static inline __attribute__((always_inline)) void GradientLoop(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
-                                                               const PetscReal *slope, PetscReal *gradient)
+/* The same in the plane: a corner's gradient is half the opposite edge turned by a right angle; the sum of the edges is
+   turned, not each. */
+static void PlaneGradientBlock(EqmMesh mesh, const PetscReal *x, const PetscReal *slope, PetscInt b,
+                               PetscReal *gradient)
 {
-#pragma omp parallel for schedule(static)
-  for (PetscInt b = 0; b < mesh->num_blocks; b++) GradientBlock(kind, mesh, x, slope, b, gradient);
+  const EqmPoint2 *const p = (const EqmPoint2 *)x;
+  EqmPoint2 *const sum = (EqmPoint2 *)gradient;
+  const size_t first = (size_t)mesh->block_vertex[b], length = (size_t)mesh->block_vertex[b + 1] - first;
+
+  for (size_t v = first; v < first + length; v++) sum[v] = (EqmPoint2){0., 0.};
+  for (PetscInt q = mesh->block_start[b]; q < mesh->block_start[b + 1]; q++) {
+    const size_t c = (size_t)mesh->block_cell[q];
+    const size_t i = (size_t)mesh->cells[3 * c], j = (size_t)mesh->cells[3 * c + 1], k = (size_t)mesh->cells[3 * c + 2];
+    const PetscReal half = .5 * slope[c];
+    const EqmPoint2 pi = p[i], pj = p[j], pk = p[k];
+    if (i - first < length) sum[i] += half * (pj - pk);
+    if (j - first < length) sum[j] += half * (pk - pi);
+    if (k - first < length) sum[k] += half * (pi - pj);
+  }
+  for (size_t v = first; v < first + length; v++) sum[v] = (EqmPoint2){sum[v][1], -sum[v][0]};
 }
 
 PetscErrorCode EqmImageGradientOf(EqmDomain domain, EqmMeasureKind kind, const EqmPlace *place, const PetscReal *slope,
@@ -153,7 +201,13 @@ PetscErrorCode EqmImageGradientOf(EqmDomain domain, EqmMeasureKind kind, const E
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
-  FOR_MEASURE(kind, GradientLoop, mesh, place->x, slope, gradient);
+#pragma omp parallel for schedule(static)
+  for (PetscInt b = 0; b < mesh->num_blocks; b++) {
+    if (kind == EQM_MEASURE_AREA2)
+      PlaneGradientBlock(mesh, place->x, slope, b, gradient);
+    else
+      FOR_MEASURE(kind, GradientBlock, mesh, place->x, slope, b, gradient);
+  }
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
   PetscFunctionReturn(0);
 }
@@ -165,15 +219,14 @@ PetscErrorCode EqmImageGradient(EqmDomain domain, const EqmPlace *place, const P
   PetscFunctionReturn(0);
 }
 
-static inline __attribute__((always_inline)) void DerivativesLoop(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
-                                                                  const PetscReal *velocity,
-                                                                  const PetscReal *acceleration, PetscReal *first,
-                                                                  PetscReal *second)
+static inline __attribute__((always_inline)) void DerivativesRange(EqmMeasureKind kind, EqmMesh mesh, PetscInt b,
+                                                                   const PetscReal *x, const PetscReal *velocity,
+                                                                   const PetscReal *acceleration, PetscReal *first,
+                                                                   PetscReal *second)
 {
-  const PetscInt dim = EqmMeasureDim(kind);
+  const PetscInt dim = EqmMeasureDim(kind), last = EqmRangeStart(mesh->num_local_cells, b + 1);
 
-#pragma omp parallel for schedule(static)
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+  for (PetscInt c = EqmRangeStart(mesh->num_local_cells, b); c < last; c++) {
     const PetscInt *const v = mesh->cells + 3 * c;
     const PetscReal *const p = x + dim * v[0], *const q = x + dim * v[1], *const r = x + dim * v[2];
     PetscReal g[9], rate = 0., bend;
@@ -199,7 +252,9 @@ PetscErrorCode EqmImageDerivativesOf(EqmDomain domain, EqmMeasureKind kind, cons
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
-  FOR_MEASURE(kind, DerivativesLoop, mesh, place->x, velocity, acceleration, first, second);
+#pragma omp parallel for schedule(static)
+  for (PetscInt b = 0; b < EQM_NUM_RANGES; b++)
+    FOR_MEASURE(kind, DerivativesRange, mesh, b, place->x, velocity, acceleration, first, second);
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,9 @@
 
 #include <equimap/domain.h>
 
+/* A point of the plane in one register: both coordinates are added and scaled at once. */
+typedef PetscReal EqmPoint2 __attribute__((vector_size(2 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
+
 /* Area of a triangle in space (001 (2.5)). */
 static inline PetscReal EqmArea3(const PetscReal *p, const PetscReal *q, const PetscReal *r)
 {

@@ -3,65 +3,90 @@
 #include "energy/kernel.h"
 #include "energy/loops.h"
 
-static inline PetscReal Dot(PetscInt dim, const PetscReal *p, const PetscReal *q, const PetscReal *r)
+/* Weights of the cells first .. last-1: scale times the dot products of the edges at each corner over `measure`;
+   compiled for each dimension. */
+static inline __attribute__((always_inline)) void DotWeights(PetscInt dim, const PetscInt *cells, const PetscReal *x,
+                                                             const PetscReal *measure, PetscInt first, PetscInt last,
+                                                             PetscReal *weights)
 {
-  PetscReal sum = 0.; /* (q - p) . (r - p) */
-  for (PetscInt k = 0; k < dim; k++) sum += (q[k] - p[k]) * (r[k] - p[k]);
-  return sum;
+  for (PetscInt c = first; c < last; c++) {
+    const PetscReal *const p = x + dim * cells[3 * c], *const q = x + dim * cells[3 * c + 1],
+                           *const r = x + dim * cells[3 * c + 2];
+    const PetscReal factor = -.25 / measure[c];
+    PetscReal dot[3] = {0., 0., 0.};
+    for (PetscInt k = 0; k < dim; k++) {
+      const PetscReal pq = q[k] - p[k], qr = r[k] - q[k], rp = p[k] - r[k];
+      dot[0] += rp * pq;
+      dot[1] += pq * qr;
+      dot[2] += qr * rp;
+    }
+    for (PetscInt a = 0; a < 3; a++) weights[3 * c + a] = factor * dot[a];
+  }
 }
 
 PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place, PetscReal *weights)
 {
   const EqmMesh mesh = domain->mesh;
-  const PetscBool of_image = (PetscBool)(kind == EQM_LAPLACIAN_STRETCH);
-  const PetscInt dim = of_image ? domain->dim : 3;
-  const PetscReal *const x = of_image ? place->x : mesh->position;
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
 #pragma omp parallel for schedule(static)
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    const PetscInt *const v = mesh->cells + 3 * c;
-    for (PetscInt a = 0; a < 3; a++) {
-      const PetscReal dot = Dot(dim, x + dim * v[a], x + dim * v[(a + 1) % 3], x + dim * v[(a + 2) % 3]);
-      /* cot = dot / (2 area); 000 (2d): cot |f(t)| / (2 |t|) = dot / (4 |t|), smooth through image area zero */
-      if (kind == EQM_LAPLACIAN_UNIFORM)
-        weights[3 * c + a] = .5;
-      else if (kind == EQM_LAPLACIAN_COTANGENT)
-        weights[3 * c + a] = .25 * dot / mesh->shape[c];
-      else
-        weights[3 * c + a] = .25 * dot / mesh->weight[c];
-    }
+  for (PetscInt b = 0; b < EQM_NUM_RANGES; b++) {
+    const PetscInt first = EqmRangeStart(mesh->num_local_cells, b), last = EqmRangeStart(mesh->num_local_cells, b + 1);
+    /* cot = dot / (2 area); 000 (2d): cot |f(t)| / (2 |t|) = dot / (4 |t|), smooth through image area zero */
+    if (kind == EQM_LAPLACIAN_COTANGENT)
+      DotWeights(3, mesh->cells, mesh->position, mesh->shape, first, last, weights);
+    else if (kind == EQM_LAPLACIAN_STRETCH && domain->dim == 2)
+      DotWeights(2, mesh->cells, place->x, mesh->weight, first, last, weights);
+    else if (kind == EQM_LAPLACIAN_STRETCH)
+      DotWeights(3, mesh->cells, place->x, mesh->weight, first, last, weights);
+    else
+      for (PetscInt k = 3 * first; k < 3 * last; k++) weights[k] = .5;
   }
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
   PetscFunctionReturn(0);
 }
 
-/* One block of rows: y_i = sum of w_ij (x_i - x_j), differences first. */
+/* One block of rows: y_i = sum of w_ij (x_i - x_j), differences first; compiled for each width. */
+static inline __attribute__((always_inline)) void ApplyWidth(PetscInt width, EqmMesh mesh, const PetscReal *weights,
+                                                             const PetscReal *x, PetscInt b, PetscReal *y)
+{
+  const size_t first = (size_t)mesh->block_vertex[b], length = (size_t)mesh->block_vertex[b + 1] - first;
+  const size_t stride = (size_t)width;
+
+  for (size_t k = stride * first; k < stride * (first + length); k++) y[k] = 0.;
+  for (PetscInt q = mesh->block_start[b]; q < mesh->block_start[b + 1]; q++) {
+    const size_t c = (size_t)mesh->block_cell[q];
+    const size_t i = (size_t)mesh->cells[3 * c], j = (size_t)mesh->cells[3 * c + 1], l = (size_t)mesh->cells[3 * c + 2];
+    const PetscReal *const w = weights + 3 * c;
+    PetscReal jl[3], li[3], ij[3];
+    for (size_t k = 0; k < stride; k++) {
+      jl[k] = w[0] * (x[stride * j + k] - x[stride * l + k]);
+      li[k] = w[1] * (x[stride * l + k] - x[stride * i + k]);
+      ij[k] = w[2] * (x[stride * i + k] - x[stride * j + k]);
+    }
+    for (size_t k = 0; k < stride && i - first < length; k++) y[stride * i + k] += ij[k] - li[k];
+    for (size_t k = 0; k < stride && j - first < length; k++) y[stride * j + k] += jl[k] - ij[k];
+    for (size_t k = 0; k < stride && l - first < length; k++) y[stride * l + k] += li[k] - jl[k];
+  }
+}
+
 static void ApplyBlock(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x, PetscInt b,
                        PetscReal *y)
 {
-  const PetscInt first = mesh->block_vertex[b];
-  const size_t length = (size_t)(mesh->block_vertex[b + 1] - first);
-
-  for (PetscInt k = width * first; k < width * mesh->block_vertex[b + 1]; k++) y[k] = 0.;
-  for (PetscInt q = mesh->block_start[b]; q < mesh->block_start[b + 1]; q++) {
-    const PetscInt c = mesh->block_cell[q], *const v = mesh->cells + 3 * c;
-    for (PetscInt a = 0; a < 3; a++) {
-      if ((size_t)(v[a] - first) >= length) continue;
-      const PetscInt i = v[a], j = v[(a + 1) % 3], l = v[(a + 2) % 3];
-      const PetscReal w_ij = weights[3 * c + (a + 2) % 3], w_il = weights[3 * c + (a + 1) % 3];
-      for (PetscInt k = 0; k < width; k++) {
-        y[width * i + k] += w_ij * (x[width * i + k] - x[width * j + k]) + w_il * (x[width * i + k] - x[width * l + k]);
-      }
-    }
-  }
+  if (width == 1)
+    ApplyWidth(1, mesh, weights, x, b, y);
+  else if (width == 2)
+    ApplyWidth(2, mesh, weights, x, b, y);
+  else
+    ApplyWidth(3, mesh, weights, x, b, y);
 }
 
 PetscErrorCode EqmLaplacianApply(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x,
                                  PetscReal *y)
 {
   PetscFunctionBegin;
+  PetscCheck(width >= 1 && width <= 3, mesh->comm, PETSC_ERR_ARG_OUTOFRANGE, "width %" PetscInt_FMT, width);
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
 #pragma omp parallel for schedule(static)
   for (PetscInt b = 0; b < mesh->num_blocks; b++) ApplyBlock(mesh, weights, width, x, b, y);

@@ -1,6 +1,7 @@
 /* CHOLMOD on one rank. Our lower triangle by rows is the upper triangle by columns that CHOLMOD reads in place. */
 #include "linalg/linalg.h"
 #include <cholmod.h>
+#include <omp.h>
 
 #if defined(PETSC_USE_64BIT_INDICES)
 #define CHOLMOD(name) cholmod_l_##name
@@ -88,7 +89,11 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
 
   PetscFunctionBegin;
   PetscCall(GetView(linear, &matrix));
+  /* its own team of threads, whose number was fixed when it was built, costs more than it brings */
+  const int levels = omp_get_max_active_levels();
+  omp_set_max_active_levels(0);
   CHOLMOD(factorize)(&c->view, c->factor, &c->common);
+  omp_set_max_active_levels(levels);
   PetscCall(RestoreView(linear, matrix));
   PetscCheck(c->common.status >= 0, PETSC_COMM_SELF, PETSC_ERR_MEM,
              "CHOLMOD's factorisation failed (status %d): too little memory for this mesh on one rank; use more",

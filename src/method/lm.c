@@ -110,6 +110,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   lm->mu = 1.;
   lm->epsilon = PetscMax(solver->settings.balance, 0.);
   lm->angle_weight = lm->epsilon / domain->target_measure;
+  PetscCall(EqmLinearDestroy(&solver->scalar)); /* the start's: a quarter of the memory, and of no more use */
+  PetscCall(PetscFree(solver->scalar_count));
   PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, PETSC_TRUE, &lm->linear));
   PetscCall(TrialCreate(solver, &lm->now));
   PetscCall(TrialCreate(solver, &lm->best));
