@@ -25,16 +25,26 @@ PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmSta
 PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
 
+/* How a map command reads its mesh. */
+typedef struct {
+  const char *density; /* a file with a weight per cell, or NULL */
+  PetscReal noise;     /* that vertices move along their normals; 0: none */
+  PetscInt seed;       /* of the noise */
+  PetscBool repair;    /* mend what is safe to mend */
+  PetscBool quiet;     /* print neither what was mended nor warnings */
+} EqmInputOptions;
+
 /* The mesh that a map command works on. */
 typedef struct {
-  EqmSoup given;    /* as the file has it */
-  EqmSoup mapped;   /* mended, or `given` itself where nothing was mended */
-  PetscInt *parent; /* per cell of the slab of `mapped` the cell of `given` it comes from; NULL where they are the same */
+  EqmSoup given;  /* as the file has it, with noise if asked */
+  EqmSoup mapped; /* mended, or `given` itself where nothing was mended */
+  PetscInt
+      *parent; /* per cell of the slab of `mapped` the cell of `given` it comes from; NULL where they are the same */
   EqmRepair repair; /* what was mended */
 } EqmInput;
 
-PETSC_INTERN PetscErrorCode EqmInputRead(const char *command, const char *file, const char *density, PetscBool repair,
-                                         PetscBool quiet, EqmLedger ledger, EqmInput *input);
+PETSC_INTERN PetscErrorCode EqmInputRead(const char *command, const char *file, const EqmInputOptions *options,
+                                         EqmLedger ledger, EqmInput *input);
 PETSC_INTERN PetscErrorCode EqmInputTakeMap(const EqmInput *input, EqmMesh mesh, EqmMap found, EqmMap *map);
 PETSC_INTERN PetscErrorCode EqmInputDestroy(EqmInput *input);
 PETSC_INTERN PetscErrorCode EqmPrintRepair(const EqmRepair *repair);

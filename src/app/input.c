@@ -79,13 +79,13 @@ static PetscErrorCode Refuse(EqmInput *input, const char *command, PetscBool rep
           repair ? ", not even after -repair" : "", findings, hope);
 }
 
-/* EqmInputRead - read the mesh that `command` is to map, mend it if `repair`, refuse it if it cannot be mapped.
+/* EqmInputRead - read the mesh that `command` is to map, add noise and mend it if asked, refuse it if it cannot be
+   mapped.
 
-   Collective on PETSC_COMM_WORLD. density - a file with a weight per cell, or NULL; quiet - print neither what was
-   mended nor warnings. input - to be freed with EqmInputDestroy. Errors: those of EqmSoupRead and
-   EqmSoupReadDensity; EQM_ERR_MESH with what is wrong, where, and whether -repair would help. */
-PetscErrorCode EqmInputRead(const char *command, const char *file, const char *density, PetscBool repair,
-                            PetscBool quiet, EqmLedger ledger, EqmInput *input)
+   Collective on PETSC_COMM_WORLD. input - to be freed with EqmInputDestroy. Errors: those of EqmSoupRead,
+   EqmSoupReadDensity and EqmSoupAddNoise; EQM_ERR_MESH with what is wrong, where, and whether -repair would help. */
+PetscErrorCode EqmInputRead(const char *command, const char *file, const EqmInputOptions *options, EqmLedger ledger,
+                            EqmInput *input)
 {
   char text[4 * EQM_MESSAGE_MAX];
   EqmDiagnosis diagnosis;
@@ -95,16 +95,17 @@ PetscErrorCode EqmInputRead(const char *command, const char *file, const char *d
   PetscCall(PetscMemzero(input, sizeof(*input)));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_READ));
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, file, &input->given));
-  if (density) PetscCall(EqmSoupReadDensity(input->given, density));
+  if (options->density) PetscCall(EqmSoupReadDensity(input->given, options->density));
+  PetscCall(EqmSoupAddNoise(input->given, options->noise, options->seed));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DIAGNOSE));
   input->mapped = input->given;
-  if (repair) PetscCall(Mend(input));
-  if (repair && !quiet) PetscCall(EqmPrintRepair(&input->repair));
+  if (options->repair) PetscCall(Mend(input));
+  if (options->repair && !options->quiet) PetscCall(EqmPrintRepair(&input->repair));
   PetscCall(EqmSoupDiagnose(input->mapped, &diagnosis));
   PetscCall(EqmDiagnosisDescribe(&diagnosis, command, &fatal, text, sizeof(text)));
-  if (fatal) PetscCall(Refuse(input, command, repair, text));
-  if (!quiet) PetscCall(PrintLinesWith("warning: ", text));
+  if (fatal) PetscCall(Refuse(input, command, options->repair, text));
+  if (!options->quiet) PetscCall(PrintLinesWith("warning: ", text));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));
   PetscFunctionReturn(0);
 }

@@ -5,7 +5,8 @@
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
       density[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary, has_history, has_density, repair, quiet;
+  PetscBool has_output, has_summary, has_history, has_density;
+  EqmInputOptions input;
 } MapOptions;
 
 static PetscErrorCode AskOptions(MapOptions *options)
@@ -26,13 +27,20 @@ static PetscErrorCode AskOptions(MapOptions *options)
       "-density",
       "a positive weight per cell (CSV with a header, or /cell/density of an HDF5 file): keep mass instead of area",
       NULL, "", options->density, sizeof(options->density), &options->has_density));
-  PetscCall(PetscOptionsBool("-repair", "mend first what is safe to mend (see equimap check)", NULL, options->repair,
-                             &options->repair, NULL));
+  PetscCall(PetscOptionsBool("-repair", "mend first what is safe to mend (see equimap check)", NULL,
+                             options->input.repair, &options->input.repair, NULL));
+  PetscCall(PetscOptionsReal("-noise",
+                             "move every vertex of the surface along its normal by so much, in units of the radius of "
+                             "the sphere of its area, times a random number of variance one: for studies of stability",
+                             NULL, options->input.noise, &options->input.noise, NULL));
+  PetscCall(PetscOptionsInt("-seed", "of the noise: another seed, other random numbers", NULL, options->input.seed,
+                            &options->input.seed, NULL));
   PetscCall(PetscOptionsInt("-threads",
                             "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
                             threads, &threads, NULL));
   PetscOptionsEnd();
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &options->quiet, NULL)); /* the solver lists it */
+  if (options->has_density) options->input.density = options->density;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &options->input.quiet, NULL)); /* the solver lists it */
   PetscFunctionReturn(0);
 }
 
@@ -87,7 +95,7 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
                         " rank%s x %" PetscInt_FMT " thread%s\n",
                         map->soup->file, map->soup->num_vertices, map->soup->num_cells, map->ranks,
                         map->ranks == 1 ? "" : "s", map->threads, map->threads == 1 ? "" : "s"));
-  if (options->quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(map->status), map->message));
+  if (options->input.quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(map->status), map->message));
   PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double)d->energy, (double)map->energy_initial));
   PetscCall(PetscPrintf(comm, "  area ratio    sd %.3e   min %.4f   median %.6f   max %.4f\n", (double)d->ratio.sd,
                         (double)d->ratio.min, (double)d->ratio.p50, (double)d->ratio.max));
@@ -160,8 +168,7 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckArguments(line, &options));
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
-  PetscCall(EqmInputRead(line->command, line->argument[0], options.has_density ? options.density : NULL, options.repair,
-                         options.quiet, ledger, &input));
+  PetscCall(EqmInputRead(line->command, line->argument[0], &options.input, ledger, &input));
   PetscCall(Solve(line, &options, ledger, &input, status));
   PetscCall(EqmInputDestroy(&input));
   PetscCall(EqmLedgerDestroy(&ledger));

@@ -19,6 +19,7 @@ typedef struct {
   PetscInt *neighbor; /* start[num_rows] */
 } EqmGraph;
 
+PETSC_INTERN PetscErrorCode EqmSoupComputeChecksum(EqmSoup soup);
 PETSC_INTERN PetscErrorCode EqmStarsCollect(EqmSoup soup, const PetscInt *owner_of_slab, EqmStars *stars);
 PETSC_INTERN PetscErrorCode EqmStarsReset(EqmStars *stars);
 PETSC_INTERN PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *vertices, PetscSF *sf);

@@ -1,5 +1,5 @@
 /* The mesh of a file, dealt to the ranks in contiguous slabs of vertices and of cells. */
-#include <equimap/soup.h>
+#include "mesh/build.h"
 #include <string.h>
 #include <zlib.h>
 
@@ -41,8 +41,9 @@ static uLong ChecksumIntegers(size_t count, const PetscInt *values)
   return checksum;
 }
 
-/* The checksum of all vertices, then all cells, from those of the slabs: the same for any number of ranks. */
-static PetscErrorCode ComputeChecksum(EqmSoup soup)
+/* The checksum of all vertices, then all cells, from those of the slabs: the same for any number of ranks. Collective.
+ */
+PetscErrorCode EqmSoupComputeChecksum(EqmSoup soup)
 {
   const size_t num_reals = 3 * (size_t)(soup->vertex_end - soup->vertex_start);
   const size_t num_integers = (size_t)soup->cell_size * (size_t)(soup->cell_end - soup->cell_start);
@@ -102,7 +103,7 @@ PetscErrorCode EqmSoupCreateFromSlabs(MPI_Comm comm, PetscInt cell_size, PetscIn
   (*soup)->vertex_start = (PetscInt)(end[0] - mine[0]);
   (*soup)->cell_end = (PetscInt)end[1];
   (*soup)->cell_start = (PetscInt)(end[1] - mine[1]);
-  PetscCall(ComputeChecksum(*soup));
+  PetscCall(EqmSoupComputeChecksum(*soup));
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,87 @@
+/* Noise for studies of stability (001 section 6.5): every vertex moves along its normal by a random length. */
+#include "mesh/diagnose.h"
+#include "mesh/build.h"
+#include "mesh/generate.h"
+
+/* The cell's normal, as long as twice its area. */
+static void CellNormal(const EqmVicinity *vicinity, PetscInt cell, PetscReal normal[3])
+{
+  const PetscInt *const v = vicinity->cells + 3 * cell;
+  const PetscReal *const p = vicinity->position + 3 * v[0], *const q = vicinity->position + 3 * v[1],
+                         *const r = vicinity->position + 3 * v[2];
+  const PetscReal a[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, b[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+
+  for (int k = 0; k < 3; k++) normal[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* The radius of the sphere of the surface's area. Areas are counted in whole parts of the largest, so that their sum
+   is the same in any order. Collective. */
+static PetscErrorCode RadiusOfArea(const EqmVicinity *vicinity, PetscReal *radius)
+{
+  const PetscReal parts = 4294967296.; /* 2^32: good for 2^31 cells */
+  PetscInt64 sum = 0;
+  PetscReal largest = 0., *area;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(vicinity->num_cells, &area));
+  for (PetscInt c = 0; c < vicinity->num_cells; c++) {
+    PetscReal quality;
+    area[c] = EqmCellMeasure(vicinity, c, &quality);
+    if (!PetscIsInfOrNanReal(area[c])) largest = PetscMax(largest, area[c]);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, vicinity->comm));
+  for (PetscInt c = 0; c < vicinity->num_cells && largest > 0.; c++) {
+    if (EqmVicinityCellOwnerVertex(vicinity, c) >= vicinity->num_owned || PetscIsInfOrNanReal(area[c])) continue;
+    sum += (PetscInt64)(area[c] / largest * parts);
+  }
+  PetscCall(PetscFree(area));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_INT64, MPI_SUM, vicinity->comm));
+  *radius = PetscSqrtReal((PetscReal)sum / parts * largest / (4. * PETSC_PI));
+  PetscFunctionReturn(0);
+}
+
+/* A number of the standard normal distribution that belongs to the vertex, by Box and Muller. */
+static PetscReal Gaussian(PetscInt seed, PetscInt vertex)
+{
+  const PetscReal u = 1. - EqmHashUniform(seed, vertex, 0), turn = EqmHashUniform(seed, vertex, 1);
+
+  return PetscSqrtReal(-2. * PetscLogReal(u)) * PetscCosReal(2. * PETSC_PI * turn);
+}
+
+/* EqmSoupAddNoise - move every vertex of a surface along its normal by sigma times the radius of the sphere of the
+   surface's area times a random number of the standard normal distribution (001 section 6.5; there, too, meshes have
+   the area of the unit sphere).
+
+   Collective. The normal is the mean of the normals around the vertex, weighted by area; a vertex without one stays.
+   The numbers depend on seed and input vertex number alone: the same bits on any number of ranks. The checksum becomes
+   that of the noisy mesh. sigma - 0 or more; 0 changes nothing. Errors: EQM_ERR_USAGE (negative or not finite sigma;
+   not a surface). */
+PetscErrorCode EqmSoupAddNoise(EqmSoup soup, PetscReal sigma, PetscInt seed)
+{
+  EqmVicinity vicinity;
+  PetscReal radius;
+
+  PetscFunctionBegin;
+  if (!(sigma >= 0.) || PetscIsInfReal(sigma))
+    EqmFail(soup->comm, EQM_ERR_USAGE, "-noise %g: give 0 or more; .001 to .005 are usual", (double)sigma);
+  if (sigma == 0.) PetscFunctionReturn(0);
+  if (soup->cell_size != 3)
+    EqmFail(soup->comm, EQM_ERR_USAGE, "-noise is for surfaces of triangles; %s is none", soup->file);
+  PetscCall(EqmVicinityCreate(soup, &vicinity));
+  PetscCall(RadiusOfArea(&vicinity, &radius));
+  for (PetscInt v = 0; v < vicinity.num_owned; v++) {
+    PetscReal normal[3] = {0., 0., 0.}, length;
+    for (PetscInt s = vicinity.star_start[v]; s < vicinity.star_start[v + 1]; s++) { /* in input order */
+      PetscReal part[3];
+      CellNormal(&vicinity, vicinity.star[s], part);
+      for (int k = 0; k < 3; k++) normal[k] += part[k];
+    }
+    length = PetscSqrtReal(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    if (!(length > 0.)) continue;
+    const PetscReal shift = sigma * radius * Gaussian(seed, vicinity.input[v]) / length;
+    for (int k = 0; k < 3; k++) soup->vertices[3 * v + k] += shift * normal[k];
+  }
+  PetscCall(EqmVicinityReset(&vicinity));
+  PetscCall(EqmSoupComputeChecksum(soup));
+  PetscFunctionReturn(0);
+}
