@@ -270,7 +270,7 @@ PetscErrorCode EqmSoupAssemble(EqmSoup *soup, PetscInt num_groups, const EqmVert
   PetscCall(DealVertices((*soup)->comm, num_groups, groups, &num_vertices, &vertices));
   PetscCall(DealCells(*soup, list, &num_cells, &cells, parent));
   if ((*soup)->density) {
-    PetscCall(PetscMalloc1(num_cells, &density));
+    PetscCall(PetscMalloc1(num_cells + 1, &density)); /* never NULL: that would say that there is none */
     for (PetscInt c = 0; c < num_cells; c++) density[c] = (*soup)->density[(*parent)[c] - (*soup)->cell_start];
   }
   PetscCall(EqmSoupCreateFromSlabs((*soup)->comm, (*soup)->cell_size, num_vertices, vertices, num_cells, cells,
