@@ -48,8 +48,8 @@ static PetscErrorCode TestRanks(const char *shape, const char *target, const cha
   EqmMap map_alone, map_together;
 
   PetscFunctionBegin;
-  PetscCall(TestMeshCreate(PETSC_COMM_SELF, shape, 900, 1, &alone));
-  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 900, 1, &together));
+  PetscCall(TestMeshCreate(PETSC_COMM_SELF, shape, 600, 1, &alone));
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 600, 1, &together));
   PetscCall(Map(&alone, target, options, &map_alone));
   PetscCall(Map(&together, target, options, &map_together));
   CHECK(map_alone->distortion.energy < .5 * map_alone->energy_initial, "%s: the energy has not fallen", options);
@@ -92,7 +92,7 @@ static PetscErrorCode TestHistory(const char *shape, const char *target, const c
   EqmSolver solver;
 
   PetscFunctionBegin;
-  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 900, 3, &test));
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 600, 3, &test));
   PetscCall(TestSolve(test.mesh, target, options, &solver));
   CHECK(solver->totals.folds == 0, "%s %s: %d folds", shape, options, (int)solver->totals.folds);
   CHECK(solver->num_history == solver->iteration + 1 && solver->iteration > 0, "%d rows for %d iterations",

@@ -296,6 +296,27 @@ static PetscErrorCode TestFan(void)
   PetscFunctionReturn(0);
 }
 
+/* Refined with its density, on ranks that have no cell too. */
+static PetscErrorCode TestRefinedFan(void)
+{
+  EqmSoup soup;
+  TestMesh coarse, fine;
+
+  PetscFunctionBegin;
+  for (PetscInt times = 0; times < 2; times++) {
+    PetscCall(MakeFan(PETSC_COMM_WORLD, &soup));
+    PetscCall(PetscMalloc1(soup->cell_end - soup->cell_start + 1, &soup->density));
+    for (PetscInt c = soup->cell_start; c < soup->cell_end; c++) soup->density[c - soup->cell_start] = Uneven(c);
+    if (times) PetscCall(EqmSoupRefine(&soup, 1));
+    PetscCall(TestMeshFromSoup(soup, times ? &fine : &coarse));
+  }
+  CHECK(fine.mesh->num_cells == 12, "%d cells", (int)fine.mesh->num_cells);
+  CHECK_CLOSE(fine.mesh->measure, coarse.mesh->measure, 1e-13, coarse.mesh->measure);
+  PetscCall(TestMeshDestroy(&coarse));
+  PetscCall(TestMeshDestroy(&fine));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
@@ -305,6 +326,7 @@ int main(int argc, char **argv)
   PetscCall(TestShape("hills", 700, "-partition slab", Uneven));
   PetscCall(TestShape("patch", 1, "-partition metis", One));
   PetscCall(TestFan());
+  PetscCall(TestRefinedFan());
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }

@@ -45,7 +45,7 @@ int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
   PetscCall(EqmInitialize(&argc, &argv));
-  PetscCall(TestShape("hills", 1500));
+  PetscCall(TestShape("hills", 800));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
