@@ -55,10 +55,9 @@ PETSC_EXTERN PetscErrorCode EqmSoupWrite(EqmSoup soup, const char *file);
    soup->density. Errors: EQM_ERR_IO, EQM_ERR_MESH (wrong count, not positive). Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupReadDensity(EqmSoup soup, const char *file);
 
-/* Move every vertex of a surface along its normal by sigma, in units of the radius of the sphere of the same area,
-   times a random number of the standard normal distribution that depends on seed and input vertex number alone (001
-   section 6.5). The checksum becomes that of the noisy mesh. Errors: EQM_ERR_USAGE (sigma negative, not a surface).
-   Collective. */
+/* Move every vertex of a surface along its normal by sigma, a length in the mesh's own units, times a random number of
+   the standard normal distribution that depends on seed and input vertex number alone (001 section 6.5). The checksum
+   becomes that of the noisy mesh. Errors: EQM_ERR_USAGE (sigma negative, not a surface). Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupAddNoise(EqmSoup soup, PetscReal sigma, PetscInt seed);
 
 /* Test shapes of about n vertices; `shape` is one of the names that EqmGenerateShapes lists. Collective. */

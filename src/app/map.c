@@ -30,8 +30,8 @@ static PetscErrorCode AskOptions(MapOptions *options)
   PetscCall(PetscOptionsBool("-repair", "mend first what is safe to mend (see equimap check)", NULL,
                              options->input.repair, &options->input.repair, NULL));
   PetscCall(PetscOptionsReal("-noise",
-                             "move every vertex of the surface along its normal by so much, in units of the radius of "
-                             "the sphere of its area, times a random number of variance one: for studies of stability",
+                             "move every vertex of the surface along its normal by a random length of this standard "
+                             "deviation, in the mesh's units: for studies of stability",
                              NULL, options->input.noise, &options->input.noise, NULL));
   PetscCall(PetscOptionsInt("-seed", "of the noise: another seed, other random numbers", NULL, options->input.seed,
                             &options->input.seed, NULL));

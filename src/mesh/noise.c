@@ -14,32 +14,6 @@ static void CellNormal(const EqmVicinity *vicinity, PetscInt cell, PetscReal nor
   for (int k = 0; k < 3; k++) normal[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-/* The radius of the sphere of the surface's area. Areas are counted in whole parts of the largest, so that their sum
-   is the same in any order. Collective. */
-static PetscErrorCode RadiusOfArea(const EqmVicinity *vicinity, PetscReal *radius)
-{
-  const PetscReal parts = 4294967296.; /* 2^32: good for 2^31 cells */
-  PetscInt64 sum = 0;
-  PetscReal largest = 0., *area;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(vicinity->num_cells, &area));
-  for (PetscInt c = 0; c < vicinity->num_cells; c++) {
-    PetscReal quality;
-    area[c] = EqmCellMeasure(vicinity, c, &quality);
-    if (!PetscIsInfOrNanReal(area[c])) largest = PetscMax(largest, area[c]);
-  }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, vicinity->comm));
-  for (PetscInt c = 0; c < vicinity->num_cells && largest > 0.; c++) {
-    if (EqmVicinityCellOwnerVertex(vicinity, c) >= vicinity->num_owned || PetscIsInfOrNanReal(area[c])) continue;
-    sum += (PetscInt64)(area[c] / largest * parts);
-  }
-  PetscCall(PetscFree(area));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_INT64, MPI_SUM, vicinity->comm));
-  *radius = PetscSqrtReal((PetscReal)sum / parts * largest / (4. * PETSC_PI));
-  PetscFunctionReturn(0);
-}
-
 /* A number of the standard normal distribution that belongs to the vertex, by Box and Muller. */
 static PetscReal Gaussian(PetscInt seed, PetscInt vertex)
 {
@@ -48,9 +22,9 @@ static PetscReal Gaussian(PetscInt seed, PetscInt vertex)
   return PetscSqrtReal(-2. * PetscLogReal(u)) * PetscCosReal(2. * PETSC_PI * turn);
 }
 
-/* EqmSoupAddNoise - move every vertex of a surface along its normal by sigma times the radius of the sphere of the
-   surface's area times a random number of the standard normal distribution (001 section 6.5; there, too, meshes have
-   the area of the unit sphere).
+/* EqmSoupAddNoise - move every vertex of a surface along its normal by sigma times a random number of the standard
+   normal distribution. Sigma is a length in the mesh's own units: a scanner's noise is, and so come out the energies that
+   001 Tables 7 and 8 have for David Head.
 
    Collective. The normal is the mean of the normals around the vertex, weighted by area; a vertex without one stays.
    The numbers depend on seed and input vertex number alone: the same bits on any number of ranks. The checksum becomes
@@ -59,16 +33,14 @@ static PetscReal Gaussian(PetscInt seed, PetscInt vertex)
 PetscErrorCode EqmSoupAddNoise(EqmSoup soup, PetscReal sigma, PetscInt seed)
 {
   EqmVicinity vicinity;
-  PetscReal radius;
 
   PetscFunctionBegin;
   if (!(sigma >= 0.) || PetscIsInfReal(sigma))
-    EqmFail(soup->comm, EQM_ERR_USAGE, "-noise %g: give 0 or more; .001 to .005 are usual", (double)sigma);
+    EqmFail(soup->comm, EQM_ERR_USAGE, "-noise %g: give a length, 0 or more", (double)sigma);
   if (sigma == 0.) PetscFunctionReturn(0);
   if (soup->cell_size != 3)
     EqmFail(soup->comm, EQM_ERR_USAGE, "-noise is for surfaces of triangles; %s is none", soup->file);
   PetscCall(EqmVicinityCreate(soup, &vicinity));
-  PetscCall(RadiusOfArea(&vicinity, &radius));
   for (PetscInt v = 0; v < vicinity.num_owned; v++) {
     PetscReal normal[3] = {0., 0., 0.}, length;
     for (PetscInt s = vicinity.star_start[v]; s < vicinity.star_start[v + 1]; s++) { /* in input order */
@@ -78,7 +50,7 @@ PetscErrorCode EqmSoupAddNoise(EqmSoup soup, PetscReal sigma, PetscInt seed)
     }
     length = PetscSqrtReal(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     if (!(length > 0.)) continue;
-    const PetscReal shift = sigma * radius * Gaussian(seed, vicinity.input[v]) / length;
+    const PetscReal shift = sigma * Gaussian(seed, vicinity.input[v]) / length;
     for (int k = 0; k < 3; k++) soup->vertices[3 * v + k] += shift * normal[k];
   }
   PetscCall(EqmVicinityReset(&vicinity));
