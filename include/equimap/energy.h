@@ -42,7 +42,7 @@ PETSC_EXTERN PetscErrorCode EqmImageDerivativesOf(EqmDomain domain, EqmMeasureKi
 PETSC_EXTERN PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *place, PetscReal *scratch,
                                           PetscInt64 *folds);
 
-/* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), METHODS: free of cancellation) and, if wanted, its
+/* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), in a form free of cancellation) and, if wanted, its
    gradient in degrees of freedom, from dE/da = 2 (r - 1) - E/A. `a` (per local cell) is scratch that returns the image
    measures. Counts one evaluation. Collective. */
 PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy,

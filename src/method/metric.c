@@ -1,6 +1,7 @@
 /* The stretch Laplacian as a metric for gradients. In the plane M = blkdiag(L_II, L_BB) (000 section 3.2), degree of
    freedom by degree of freedom, angles and slides with the first coordinate. On the sphere the gradient is a field in
-   space: each coordinate is solved with L_S + .1 mass and the result projected back (METHODS section 5). */
+   space: each coordinate is solved with L_S + .1 mass and the result projected back (docs/methods.md,
+   Published methods). */
 #include "method/method.h"
 
 struct _p_EqmMetric {

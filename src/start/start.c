@@ -115,7 +115,7 @@ PetscErrorCode EqmStepToFold(EqmSolver solver, const PetscReal *velocity, PetscR
   PetscFunctionReturn(0);
 }
 
-/* Towards the harmonic map of L_S(f) with the boundary held, but not through a fold (METHODS section 9). */
+/* Towards the harmonic map of L_S(f) with the boundary held, but not through a fold (docs/methods.md, Starts). */
 static PetscErrorCode FixedPointStep(EqmSolver solver, PetscBool guarded, PetscReal *weights, EqmPlace *to)
 {
   const PetscInt n = solver->domain->dim * solver->mesh->num_local;

@@ -113,7 +113,8 @@ static PetscErrorCode TestGradient(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* mu d^T M d of METHODS 10: per cell (|r| + .3 sqrt(phi)) (sqrt(3)/2) times the squared displacement about its mean. */
+/* mu d^T M d, the damping of docs/methods.md: per cell (|rho| + .3 sqrt(phi)) (sqrt(3)/2) times the squared displacement
+   about its mean. */
 static PetscReal Metric(EqmSolver solver, const PetscReal *velocity)
 {
   const EqmLm *const lm = solver->data;

@@ -238,7 +238,7 @@ static PetscErrorCode MakeFlatDisk(TestMesh *test)
   PetscFunctionReturn(0);
 }
 
-/* E of the identity moved by delta times something random, by the house's form and by the first form of METHODS 1. */
+/* E of the identity moved by delta times something random, by the house's form and by the papers'. */
 static PetscErrorCode EnergyNearMinimum(EqmDomain domain, PetscReal delta, PetscReal *energy, PetscReal *first_form)
 {
   const EqmMesh mesh = domain->mesh;
@@ -266,7 +266,7 @@ static PetscErrorCode EnergyNearMinimum(EqmDomain domain, PetscReal delta, Petsc
   PetscFunctionReturn(0);
 }
 
-/* METHODS 1: (W/A) sum a^2/w - A loses every digit near the minimum, A sum w (r - 1)^2 none: it stays quadratic. */
+/* (W/A) sum a^2/w - A loses every digit near the minimum, A sum w (r - 1)^2 none: it stays quadratic. */
 static PetscErrorCode TestCancellation(void)
 {
   PetscReal energy[2], first_form[2], zero;

@@ -20,7 +20,7 @@ static PetscErrorCode Run(EqmMesh mesh, const char *options, PetscReal *energy, 
   PetscFunctionReturn(0);
 }
 
-/* Figures of 000 Table 1 where they can be reproduced, of METHODS 3 where they cannot. */
+/* Figures of 000 Table 1 where they can be reproduced, of docs/methods.md where they cannot. */
 static PetscErrorCode TestRows(EqmMesh mesh)
 {
   PetscReal energy, sd;
@@ -40,7 +40,7 @@ static PetscErrorCode TestRows(EqmMesh mesh)
   PetscFunctionReturn(0);
 }
 
-/* METHODS 12: with -balance .05 two starts lead to one map. */
+/* With -balance .05 two starts lead to one map (docs/methods.md, Uniqueness). */
 static PetscErrorCode TestUniqueness(EqmMesh mesh)
 {
   const char *const options[2] = {"-method lm -balance .05 -energy_rtol 1e-6 -start guarded",

@@ -1,5 +1,5 @@
-/* METHODS 12: area-preserving maps are many, and which of them comes out depends on the start; with a share of angle
-   energy it does not. */
+/* Area-preserving maps are many, and which of them comes out depends on the start; with a share of angle energy it does
+   not (docs/methods.md, Uniqueness). */
 #include "support/testing.h"
 
 /* Rms distance between the maps from two starts, after the best rotation; the larger of the two energies. */
