@@ -86,6 +86,13 @@ static PetscErrorCode HandleError(MPI_Comm comm, int line, const char *function,
     if (type == PETSC_ERROR_INITIAL && rank == 0) fprintf(stderr, "equimap: %s\n", message);
     return code;
   }
+  if (function &&
+      !strncmp(function, "PetscOptions", 12)) { /* an option's value that is no number, or none of the choices */
+    PetscMPIInt rank = 0;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    if (rank == 0) fprintf(stderr, "equimap: wrong value of an option: %s\n", message ? message : "no reason given");
+    return EQM_ERR_USAGE;
+  }
   PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, context);
   MPI_Abort(PETSC_COMM_WORLD, EQM_STATUS_INTERNAL);
   return code;

@@ -1,4 +1,4 @@
-/* Levenberg-Marquardt on log ratios with geodesic acceleration (METHODS sections 10 and 12).
+/* Levenberg-Marquardt on log ratios with geodesic acceleration (docs/methods.md).
 
    Minimise sum w rho^2 + (eps/T) (E_D - A): rho a residual of each cell's ratio, T the target's measure, E_D - A the
    angle energy (E_D with the mesh's cotangents). With eps = 0, rho = log(a/w) less its weighted mean; with eps > 0, rho
@@ -12,18 +12,20 @@
 #include <math.h>
 
 enum { MOST_DAMPINGS = 8, MEMORY = 10 };
+/* Weighted by the residual, the metric fades by itself; below this its near-null directions would carry rounding, not
+ * news. */
+static const PetscReal least_damping = 1e-2;
 
 /* Damping follows the length of the step that the search settled on. */
 static void AdaptDamping(EqmLm *lm, PetscReal t)
 {
   if (t >= .99)
-    lm->mu *= .3;
-  else if (t > .3)
-    lm->mu *= 2.;
-  else if (t >= .13)
-    lm->mu *= 10.;
-  else
+    lm->mu *= .5;
+  else if (t < .13)
     lm->mu *= 31.6;
+  else if (t <= .3)
+    lm->mu *= 10.;
+  lm->mu = PetscMax(lm->mu, least_damping);
 }
 
 /* Sphere: the barrier gives way when it is a large part of the objective and not needed to keep steps long. */
@@ -179,7 +181,7 @@ static PetscErrorCode Destroy(EqmSolver solver)
 
 const EqmMethod EqmMethodLm = {
     .name = "lm",
-    .purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration (METHODS 10, 12)",
+    .purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration: the house's own",
     .default_start = "guarded",
     .sphere_start = "guarded",
     .default_max_it = 60,

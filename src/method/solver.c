@@ -114,9 +114,16 @@ static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
                             (double)set->gradient_tol));
   } else if (Stagnates(solver)) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
-                            "the objective fell by less than %g per iteration over the last %" PetscInt_FMT
+                            "the objective fell by less than %g %% per iteration over the last %" PetscInt_FMT
                             " iterations",
-                            (double)set->energy_rtol, set->stagnation));
+                            100. * (double)set->energy_rtol, set->stagnation));
+    if (solver->totals.energy >
+        .25 * solver->totals.total) { /* ratios off by half, root mean square: that is no map of equal areas */
+      solver->status = EQM_STATUS_NOT_CONVERGED;
+      PetscCall(PetscStrlcat(solver->message,
+                             ", far from equal areas: the target may not suit the mesh (corners? slivers?)",
+                             sizeof(solver->message)));
+    }
   } else {
     solver->status = EQM_STATUS_NOT_CONVERGED;
     if (solver->iteration >= set->max_it) {
