@@ -16,28 +16,39 @@ enum { MOST_DAMPINGS = 8, MEMORY = 10 };
  * news. */
 static const PetscReal least_damping = 1e-2;
 
-/* Damping follows the length of the step that the search settled on. */
+/* Damping follows the length of the step that the search settled on; on the sphere in larger strides. Factors by trial.
+ */
 static void AdaptDamping(EqmLm *lm, PetscReal t)
 {
+  const PetscBool sphere = (PetscBool)(lm->lean_rate != NULL);
+
   if (t >= .99)
-    lm->mu *= .5;
-  else if (t < .13)
-    lm->mu *= 31.6;
-  else if (t <= .3)
+    lm->mu *= sphere ? .3 : .5;
+  else if (t > .3)
+    lm->mu *= sphere ? 2. : 1.;
+  else if (t >= .13)
     lm->mu *= 10.;
+  else
+    lm->mu *= 31.6;
   lm->mu = PetscMax(lm->mu, least_damping);
 }
 
-/* Sphere: the barrier gives way when it is a large part of the objective and not needed to keep steps long. */
-static void AdaptBarrier(EqmLm *lm, PetscReal t)
+/* Sphere: the barrier gives way when it is a large part of the objective and not needed to keep steps long, or when it
+   is what the residual is in balance with: a minimum of the sum is not yet one of the residual. */
+static void AdaptBarrier(EqmLm *lm, PetscReal t, PetscReal old_squares)
 {
-  while (t > .2 && lm->kappa * lm->now.barrier > .1 * lm->now.squares && lm->kappa > 1e-300) lm->kappa *= .3;
+  while (t > .2 && lm->kappa * lm->now.barrier > .1 * lm->now.squares &&
+         lm->kappa > PETSC_MACHINE_EPSILON * PETSC_MACHINE_EPSILON) {
+    lm->kappa *= .3;
+  }
+  if (lm->now.squares > .97 * old_squares) lm->kappa *= .01;
   EqmLmWeigh(lm, &lm->now);
 }
 
 static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 {
   EqmLm *const lm = solver->data;
+  const PetscReal old_squares = lm->now.squares;
   PetscReal t = 0.;
 
   PetscFunctionBegin;
@@ -63,7 +74,7 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   AdaptDamping(lm, t);
   EqmLmSwap(&lm->now, &lm->best);
   PetscCall(EqmLmInnerSteps(solver));
-  if (lm->kappa > 0.) AdaptBarrier(lm, t);
+  if (lm->kappa > 0.) AdaptBarrier(lm, t, old_squares);
   PetscCall(EqmPlaceCopy(solver->domain, &lm->now.place, &solver->place));
   PetscCall(PetscArraycpy(solver->image, lm->now.image, solver->mesh->num_local_cells));
   PetscCall(EqmSolverSum(solver));

@@ -10,7 +10,7 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
                             .start_steps = -1,
                             .energy_rtol = -1.,
                             .ratio_tol = -1.,
-                            .gradient_tol = 1e-14,
+                            .gradient_tol = 0.,
                             .balance = -1.,
                             .stagnation = 5,
                             .ncg_guard = PETSC_TRUE,

@@ -1,0 +1,289 @@
+/* The smallest eigenvalues of the Hessian of the normalised authalic energy at a map (001 section 6.1, Table 4).
+
+   With E(a) = sum a^2/(w A) - A and s = dE/da, the Riemannian Hessian in the frames' degrees of freedom is
+
+       H = (2/A) J^T W^-1 J + sum s (Hess a + what the geodesics' curvature adds) + U C U^T,
+
+   J = da, W the weights, and U the gradients of A and of sum (r - 1) a at frozen r: what the total area couples. E(a)
+   is convex, so that only the sum over s can be negative: the eigenvalues lie above minus the largest sum, over the
+   cells around a vertex, of these cells' norms. H less a shift below that bound is definite; its inverse, a factor and
+   two extra columns (Woodbury), turns H's smallest eigenvalues into the largest, which Lanczos finds at once. */
+#include "method/method.h"
+#include "energy/kernel.h"
+#ifdef EQM_HAVE_SLEPC
+#include <slepceps.h>
+
+typedef struct {
+  EqmSolver solver;
+  EqmLinear linear;            /* H - shift without U C U^T, factored */
+  PetscReal shift;             /* below all eigenvalues */
+  PetscReal *slope;            /* s per local cell */
+  PetscReal *share;            /* per local vertex: one over the cells around it, for owned ones */
+  Vec column[2], solved[2];    /* U, and what the factor makes of it */
+  PetscReal capacitance[2][2]; /* (C^-1 + U^T solved)^-1 */
+} Hessian;
+
+/* The displacements that a cell's degrees of freedom stand for: nine (six) ambient numbers each; returns how many. */
+static PetscInt CellDirections(EqmSolver solver, PetscInt cell, PetscInt corner[6], PetscReal direction[6][9])
+{
+  const EqmDomain domain = solver->domain;
+  PetscInt n = 0;
+
+  for (PetscInt a = 0; a < 3; a++) {
+    PetscReal frame[9];
+    const PetscInt count = EqmDomainFrame(domain, &solver->place, solver->mesh->cells[3 * cell + a], frame);
+    for (PetscInt k = 0; k < count; k++, n++) {
+      corner[n] = a;
+      for (PetscInt c = 0; c < 9; c++) direction[n][c] = 0.;
+      for (PetscInt c = 0; c < domain->dim; c++) direction[n][domain->dim * a + c] = frame[domain->dim * k + c];
+    }
+  }
+  return n;
+}
+
+/* First derivatives of the cell's measure, and second ones along geodesics; returns the number of degrees of freedom.
+ */
+static PetscInt CellDerivatives(EqmSolver solver, PetscInt cell, PetscInt corner[6], PetscReal first[6],
+                                PetscReal second[6][6])
+{
+  const EqmDomain domain = solver->domain;
+  const PetscInt dim = domain->dim, *const v = solver->mesh->cells + 3 * cell;
+  const PetscReal *const x[3] = {solver->place.x + dim * v[0], solver->place.x + dim * v[1],
+                                 solver->place.x + dim * v[2]};
+  PetscReal direction[6][9], sum[9], gradient[9];
+  const PetscInt n = CellDirections(solver, cell, corner, direction);
+
+  EqmMeasureGradient(domain->measure, x[0], x[1], x[2], gradient);
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal *const d = direction[i];
+    first[i] = 0.;
+    for (PetscInt k = 0; k < 3 * dim; k++) first[i] += gradient[k] * d[k];
+    second[i][i] = EqmMeasureBend(domain->measure, x[0], x[1], x[2], d, d + dim, d + 2 * dim);
+    for (PetscInt j = 0; j < i; j++) { /* by polarisation */
+      for (PetscInt k = 0; k < 3 * dim; k++) sum[k] = d[k] + direction[j][k];
+      const PetscReal both = EqmMeasureBend(domain->measure, x[0], x[1], x[2], sum, sum + dim, sum + 2 * dim);
+      second[i][j] = second[j][i] = .5 * (both - second[i][i] - second[j][j]);
+    }
+  }
+  for (PetscInt i = 0; i < n; i++) { /* a geodesic of unit speed on a circle or sphere has the acceleration -x */
+    const PetscInt kind = domain->kind[v[corner[i]]];
+    if (kind != EQM_VERTEX_CIRCLE && kind != EQM_VERTEX_SPHERE) continue;
+    for (PetscInt c = 0; c < dim; c++) second[i][i] -= gradient[dim * corner[i] + c] * x[corner[i]][c];
+  }
+  return n;
+}
+
+static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
+{
+  const Hessian *const h = context;
+  const EqmMesh mesh = h->solver->mesh;
+  const PetscReal scale = 2. / (mesh->weight[cell] * h->solver->totals.total);
+  PetscReal first[6], second[6][6];
+  PetscInt corner[6];
+  const PetscInt n = CellDerivatives(h->solver, cell, corner, first, second);
+
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt j = 0; j < n; j++) matrix[n * i + j] = scale * first[i] * first[j] + h->slope[cell] * second[i][j];
+    matrix[n * i + i] -= h->shift * h->share[mesh->cells[3 * cell + corner[i]]];
+  }
+}
+
+/* Slopes, the shift, and how many cells each vertex has. */
+static PetscErrorCode Prepare(Hessian *h)
+{
+  const EqmMesh mesh = h->solver->mesh;
+  const EqmImageTotals *const totals = &h->solver->totals;
+  PetscReal *norm, largest[2] = {0., 0.};
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(mesh->num_local, &norm));
+  PetscCall(PetscArrayzero(h->share, mesh->num_local));
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    PetscReal first[6], second[6][6], squares = 0., diagonal = 0.;
+    PetscInt corner[6];
+    const PetscInt n = CellDerivatives(h->solver, c, corner, first, second);
+    h->slope[c] = 2. * (h->solver->image[c] / (mesh->weight[c] * totals->total) - 1.) - totals->energy / totals->total;
+    for (PetscInt i = 0; i < n; i++) {
+      for (PetscInt j = 0; j < n; j++) squares += PetscSqr(h->slope[c] * second[i][j]);
+      diagonal = PetscMax(diagonal, 2. * first[i] * first[i] / (mesh->weight[c] * totals->total));
+    }
+    largest[1] = PetscMax(largest[1], diagonal);
+    for (PetscInt a = 0; a < 3; a++) {
+      norm[mesh->cells[3 * c + a]] += PetscSqrtReal(squares);
+      h->share[mesh->cells[3 * c + a]] += 1.;
+    }
+  }
+  for (PetscInt v = 0; v < mesh->num_owned; v++) largest[0] = PetscMax(largest[0], norm[v]);
+  for (PetscInt v = 0; v < mesh->num_local; v++) h->share[v] = 1. / h->share[v];
+  PetscCall(PetscFree(norm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPIU_MAX, mesh->comm));
+  h->shift = -PetscMax(1.001 * largest[0], 1e-9 * largest[1]); /* the second: rotations must not make it singular */
+  PetscFunctionReturn(0);
+}
+
+/* x <- factor^-1 x. */
+static PetscErrorCode SolveFactored(Hessian *h, Vec x)
+{
+  PetscScalar *array;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArray(x, &array));
+  PetscCall(EqmLinearSolve(h->linear, 1, array, array));
+  PetscCall(VecRestoreArray(x, &array));
+  PetscFunctionReturn(0);
+}
+
+/* U = (g, p), g = sum da, p = sum (r - 1) da, C = (2/A) (E/A - 1, -1; -1, 0); and (C^-1 + U^T solved)^-1. */
+static PetscErrorCode Couple(Hessian *h)
+{
+  const EqmSolver solver = h->solver;
+  const EqmMesh mesh = solver->mesh;
+  const PetscReal total = solver->totals.total, energy = solver->totals.energy;
+  PetscReal *slope, *ambient, m[2][2];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(mesh->num_local_cells, &slope, solver->domain->dim * mesh->num_owned, &ambient));
+  for (int k = 0; k < 2; k++) {
+    for (PetscInt c = 0; c < mesh->num_local_cells; c++)
+      slope[c] = k == 0 ? 1. : solver->image[c] / (mesh->weight[c] * total) - 1.;
+    PetscCall(EqmImageGradient(solver->domain, &solver->place, slope, ambient));
+    PetscCall(EqmDomainProject(solver->domain, &solver->place, ambient, h->column[k]));
+    PetscCall(VecCopy(h->column[k], h->solved[k]));
+    PetscCall(SolveFactored(h, h->solved[k]));
+  }
+  PetscCall(PetscFree2(slope, ambient));
+  for (int i = 0; i < 2; i++) {
+    for (int j = 0; j < 2; j++) PetscCall(VecDot(h->column[i], h->solved[j], &m[i][j]));
+  }
+  m[0][1] -= .5 * total; /* C^-1 = (A/2) (0, -1; -1, 1 - E/A) */
+  m[1][0] -= .5 * total;
+  m[1][1] += .5 * (total - energy);
+  const PetscReal determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+  h->capacitance[0][0] = m[1][1] / determinant;
+  h->capacitance[1][1] = m[0][0] / determinant;
+  h->capacitance[0][1] = -m[0][1] / determinant;
+  h->capacitance[1][0] = -m[1][0] / determinant;
+  PetscFunctionReturn(0);
+}
+
+/* y = (H - shift)^-1 x. */
+static PetscErrorCode ApplyInverse(Mat matrix, Vec x, Vec y)
+{
+  Hessian *h;
+  PetscReal along[2];
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(matrix, &h));
+  for (int k = 0; k < 2; k++) PetscCall(VecDot(h->solved[k], x, &along[k]));
+  PetscCall(VecCopy(x, y));
+  PetscCall(SolveFactored(h, y));
+  for (int k = 0; k < 2; k++)
+    PetscCall(VecAXPY(y, -(h->capacitance[k][0] * along[0] + h->capacitance[k][1] * along[1]), h->solved[k]));
+  PetscFunctionReturn(0);
+}
+
+/* Lanczos on the inverse; its largest eigenvalues are 1 / (lambda - shift). */
+static PetscErrorCode Lanczos(Hessian *h, PetscInt num_dofs, PetscInt wanted, PetscReal *values, PetscInt *found)
+{
+  const PetscInt n = h->solver->domain->num_dofs;
+  Mat inverse;
+  EPS eps;
+
+  PetscFunctionBegin;
+  if (!SlepcInitializeCalled) PetscCall(SlepcInitializeNoArguments());
+  PetscCall(MatCreateShell(h->solver->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, h, &inverse));
+  PetscCall(MatShellSetOperation(inverse, MATOP_MULT, (void (*)(void))ApplyInverse));
+  PetscCall(EPSCreate(h->solver->comm, &eps));
+  PetscCall(EPSSetOptionsPrefix(eps, "hessian_"));
+  PetscCall(EPSSetOperators(eps, inverse, NULL));
+  PetscCall(EPSSetProblemType(eps, EPS_HEP));
+  PetscCall(EPSSetWhichEigenpairs(eps, EPS_LARGEST_REAL));
+  PetscCall(EPSSetDimensions(eps, wanted, PetscMin(num_dofs, 2 * wanted + 60),
+                             PETSC_DEFAULT)); /* near a minimum they crowd */
+  PetscCall(EPSSetTolerances(eps, 1e-7, 300));
+  PetscCall(EPSSetFromOptions(eps));
+  PetscCall(EPSSolve(eps));
+  PetscCall(EPSGetConverged(eps, found));
+  *found = PetscMin(*found, wanted);
+  for (PetscInt k = 0; k < *found; k++) {
+    PetscScalar theta;
+    PetscCall(EPSGetEigenvalue(eps, k, &theta, NULL));
+    values[k] = h->shift + 1. / theta;
+  }
+  PetscCall(EPSDestroy(&eps));
+  PetscCall(MatDestroy(&inverse));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Eigenvalues(Hessian *h, PetscInt num_dofs, PetscInt wanted, PetscReal *values, PetscInt *found)
+{
+  const EqmDomain domain = h->solver->domain;
+  const EqmUnknowns unknowns = {.num_owned = domain->num_dofs,
+                                .first = domain->dof_first,
+                                .start = domain->dof_start,
+                                .count = domain->dof_count};
+  const EqmMesh mesh = h->solver->mesh;
+  PetscBool success;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(mesh->num_local_cells, &h->slope, mesh->num_local, &h->share));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(EqmDomainCreateVec(domain, &h->column[k]));
+    PetscCall(VecDuplicate(h->column[k], &h->solved[k]));
+  }
+  PetscCall(Prepare(h));
+  PetscCall(EqmLinearCreate(mesh, h->solver->ordering, &unknowns, PETSC_TRUE, &h->linear));
+  PetscCall(EqmLinearFactor(h->linear, CellMatrix, h, 1., &success));
+  PetscCheck(success, mesh->comm, PETSC_ERR_NOT_CONVERGED,
+             "the Hessian is too near to singular for its eigenvalues to be computed");
+  PetscCall(Couple(h));
+  PetscCall(Lanczos(h, num_dofs, wanted, values, found));
+  PetscCall(EqmLinearDestroy(&h->linear));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(VecDestroy(&h->column[k]));
+    PetscCall(VecDestroy(&h->solved[k]));
+  }
+  PetscCall(PetscFree2(h->slope, h->share));
+  PetscFunctionReturn(0);
+}
+#endif
+
+/* EqmHessianAvailable - can eigenvalues of the Hessian be computed, that is, was the library built with SLEPc?
+
+   Not collective. */
+PetscBool EqmHessianAvailable(void)
+{
+#ifdef EQM_HAVE_SLEPC
+  return PETSC_TRUE;
+#else
+  return PETSC_FALSE;
+#endif
+}
+
+/* EqmSolverHessianEigenvalues - the algebraically smallest eigenvalues of the Hessian of the normalised authalic energy
+   at the present map.
+
+   Collective, after EqmSolverSolve. The Hessian is the Riemannian one in orthonormal coordinates of the tangent spaces:
+   second derivatives along geodesics. On the sphere three eigenvalues belong to rotations and vanish where the gradient
+   does; on the disk one. wanted - how many, at most the number of degrees of freedom; values - `wanted` numbers,
+   ascending; found - how many converged. Options: -hessian_eps_* (SLEPc). Counts a coupled factorisation and its
+   solves. Errors: EQM_ERR_USAGE (built without SLEPc, or too many wanted). */
+PetscErrorCode EqmSolverHessianEigenvalues(EqmSolver solver, PetscInt wanted, PetscReal *values, PetscInt *found)
+{
+  PetscInt num_dofs;
+
+  PetscFunctionBegin;
+  *found = 0;
+  if (!EqmHessianAvailable())
+    EqmFail(solver->comm, EQM_ERR_USAGE,
+            "eigenvalues of the Hessian need SLEPc (Debian: slepc-dev); install it and build equimap again");
+  PetscCall(MPIU_Allreduce(&solver->domain->num_dofs, &num_dofs, 1, MPIU_INT, MPI_SUM, solver->comm));
+  if (wanted < 1 || wanted > num_dofs)
+    EqmFail(solver->comm, EQM_ERR_USAGE,
+            "the Hessian has %" PetscInt_FMT " eigenvalues; %" PetscInt_FMT " were asked for", num_dofs, wanted);
+#ifdef EQM_HAVE_SLEPC
+  Hessian h = {.solver = solver};
+  PetscCall(Eigenvalues(&h, num_dofs, wanted, values, found));
+#endif
+  PetscFunctionReturn(0);
+}
