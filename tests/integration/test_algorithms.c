@@ -217,7 +217,7 @@ static PetscErrorCode NcgBegin(EqmMesh mesh, Ncg *ncg)
   PetscCall(VecDuplicate(ncg->g, &ncg->product));
   for (PetscInt v = 0; v < mesh->num_local; v++) ncg->group[v] = mesh->on_boundary[v] ? 1 : 0;
   PetscCall(EqmLaplacianWeights(ncg->solver->domain, EQM_LAPLACIAN_STRETCH, &ncg->solver->place, ncg->weights));
-  PetscCall(EqmGroupFactor(ncg->solver, ncg->weights, ncg->group));
+  PetscCall(EqmGroupFactor(ncg->solver, ncg->weights, ncg->group, NULL));
   PetscFunctionReturn(0);
 }
 
