@@ -51,6 +51,8 @@ struct _p_EqmMap {
   PetscInt ranks, threads;
   PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS], total_seconds;
   PetscInt64 memory_max_per_rank, memory_total, num_boundary_vertices;
+  PetscInt num_hessian_eigenvalues; /* where they were asked for: the smallest of the Hessian at the result */
+  PetscReal *hessian_eigenvalues;
   EqmMap mended;          /* where the input was mended first: the map of the mended mesh; referenced, not owned */
   const PetscInt *parent; /* with `mended`: per cell of its soup's slab the input cell it comes from; referenced */
   EqmRepair repair;       /* with `mended`: what was mended */

@@ -21,6 +21,13 @@ PETSC_EXTERN PetscErrorCode EqmSolverDestroy(EqmSolver *solver);
 /* Print (on rank 0) the options that EqmSolverSetFromOptions knows, without a mesh. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverHelp(MPI_Comm comm, const char *target);
 
+/* Was the library built with SLEPc, which EqmSolverHessianEigenvalues needs? Not collective. */
+PETSC_EXTERN PetscBool EqmHessianAvailable(void);
+/* The `wanted` algebraically smallest eigenvalues of the Riemannian Hessian of the normalised authalic energy at the
+   present map (001 Table 4), ascending; `found` tells how many converged. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_EXTERN PetscErrorCode EqmSolverHessianEigenvalues(EqmSolver solver, PetscInt wanted, PetscReal *values,
+                                                        PetscInt *found);
+
 /* Fill distortion, ratios and folds of `map` from the places of local vertices, dim each. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x);
 

@@ -7,6 +7,7 @@ typedef struct {
       density[PETSC_MAX_PATH_LEN];
   PetscBool has_output, has_summary, has_history, has_density;
   EqmInputOptions input;
+  PetscInt hessian_eigenvalues;
 } MapOptions;
 
 static PetscErrorCode AskOptions(MapOptions *options)
@@ -35,6 +36,10 @@ static PetscErrorCode AskOptions(MapOptions *options)
                              NULL, options->input.noise, &options->input.noise, NULL));
   PetscCall(PetscOptionsInt("-seed", "of the noise: another seed, other random numbers", NULL, options->input.seed,
                             &options->input.seed, NULL));
+  PetscCall(PetscOptionsInt("-hessian_eigenvalues",
+                            "compute so many of the smallest eigenvalues of the energy's Hessian at the result (needs "
+                            "a build with SLEPc)",
+                            NULL, options->hessian_eigenvalues, &options->hessian_eigenvalues, NULL));
   PetscCall(PetscOptionsInt("-threads",
                             "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
                             threads, &threads, NULL));
@@ -53,6 +58,12 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOption
             line->command, line->num_arguments, line->command);
   }
   if (!options->has_output) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "no output named; add -o OUT.h5");
+  if (options->hessian_eigenvalues < 0)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-hessian_eigenvalues: give 0 or more");
+  if (options->hessian_eigenvalues > 0 && !EqmHessianAvailable()) {
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
+            "-hessian_eigenvalues needs SLEPc (Debian: slepc-dev); install it and build equimap again");
+  }
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
   PetscCall(EqmCheckOutput(line->argument[0], options->output));
   if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[0], options->summary));
@@ -80,6 +91,24 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
   PetscCall(CloseBooks(ledger, map));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));
+  PetscFunctionReturn(0);
+}
+
+/* 001 Table 4, for the map that was found. */
+static PetscErrorCode TakeEigenvalues(const MapOptions *options, EqmLedger ledger, EqmSolver solver, EqmMap map)
+{
+  const PetscInt wanted = options->hessian_eigenvalues;
+
+  PetscFunctionBegin;
+  if (wanted == 0) PetscFunctionReturn(0);
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_MEASURE));
+  PetscCall(PetscMalloc1(wanted, &map->hessian_eigenvalues));
+  PetscCall(EqmSolverHessianEigenvalues(solver, wanted, map->hessian_eigenvalues, &map->num_hessian_eigenvalues));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_MEASURE));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\nsmallest eigenvalues of the Hessian:"));
+  for (PetscInt k = 0; k < map->num_hessian_eigenvalues; k++)
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, " %.4e", (double)map->hessian_eigenvalues[k]));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, map->num_hessian_eigenvalues < wanted ? " (the others not found)\n" : "\n"));
   PetscFunctionReturn(0);
 }
 
@@ -142,6 +171,7 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(EqmSolverSolve(solver));
   PetscCall(EqmSolverGetMap(solver, input->mapped, &found));
   PetscCall(EqmInputTakeMap(input, mesh, found, &map));
+  PetscCall(TakeEigenvalues(options, ledger, solver, map));
   PetscCall(Write(options, ledger, map));
   PetscCall(PrintResult(options, map));
   *status = map->status;

@@ -3,13 +3,13 @@
 #include <string.h>
 
 /* PETSc's own options are read when its objects are made, later than ours: these prefixes are let through. */
-static const char *const petsc_prefixes[] = {"log_",       "malloc",   "info",   "options_",     "ksp_",
-                                             "pc_",        "mat_",     "vec_",   "sf_",          "mg_",
-                                             "error",      "on_error", "fp_",    "start",        "stop_for",
-                                             "debug",      "no_",      "check",  "get_",         "viewer_",
-                                             "nox",        "display",  "hypre_", "gamg_",        "coarse_",
-                                             "multigrid_", "unfold_",  "saws",   "skip_petscrc", "shared_tmp",
-                                             "threads",    "help"};
+static const char *const petsc_prefixes[] = {"log_",       "malloc",   "info",        "options_",     "ksp_",
+                                             "pc_",        "mat_",     "vec_",        "sf_",          "mg_",
+                                             "error",      "on_error", "fp_",         "start",        "stop_for",
+                                             "debug",      "no_",      "check",       "get_",         "viewer_",
+                                             "nox",        "display",  "hypre_",      "gamg_",        "coarse_",
+                                             "multigrid_", "unfold_",  "saws",        "skip_petscrc", "shared_tmp",
+                                             "threads",    "help",     "hessian_eps_"};
 
 static PetscBool IsPetscs(const char *name)
 {

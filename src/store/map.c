@@ -38,6 +38,7 @@ PetscErrorCode EqmMapDestroy(EqmMap *map)
   PetscCall(PetscFree((*map)->cell_ratio));
   PetscCall(PetscFree((*map)->vertex_ratio));
   PetscCall(PetscFree((*map)->history));
+  PetscCall(PetscFree((*map)->hessian_eigenvalues));
   PetscCall(PetscFree(*map));
   PetscFunctionReturn(0);
 }

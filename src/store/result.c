@@ -23,6 +23,13 @@ static EqmSlab HistorySlab(EqmMap map, PetscMPIInt rank)
   return slab;
 }
 
+/* So are the Hessian's eigenvalues. */
+static EqmSlab HessianSlab(EqmMap map, PetscMPIInt rank)
+{
+  const EqmSlab slab = {map->num_hessian_eigenvalues, 0, rank == 0 ? map->num_hessian_eigenvalues : 0, 0};
+  return slab;
+}
+
 static const struct {
   const char *path;
   size_t offset;
@@ -83,6 +90,8 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
     PetscCall(EqmH5DeclareReals(h5, history_reals[k].path, map->num_history, 0));
   for (int k = 0; k < LENGTH(history_counts); k++)
     PetscCall(EqmH5DeclareIntegers(h5, history_counts[k].path, map->num_history, 0));
+  if (map->num_hessian_eigenvalues)
+    PetscCall(EqmH5DeclareReals(h5, "/map/hessian_eigenvalues", map->num_hessian_eigenvalues, 0));
   if (map->mended) PetscCall(DeclareMended(h5, map->mended));
   PetscFunctionReturn(0);
 }
@@ -208,6 +217,8 @@ static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5WriteReals(h5, "/vertex/ratio", VertexSlab(soup, 0), map->vertex_ratio));
   if (soup->density) PetscCall(EqmH5WriteReals(h5, "/cell/density", CellSlab(soup, 0), soup->density));
   PetscCall(WriteHistory(h5, map));
+  if (map->num_hessian_eigenvalues)
+    PetscCall(EqmH5WriteReals(h5, "/map/hessian_eigenvalues", HessianSlab(map, h5->rank), map->hessian_eigenvalues));
   if (map->mended) PetscCall(WriteMended(h5, map->mended, map->parent));
   PetscFunctionReturn(0);
 }

@@ -115,6 +115,15 @@ static void AddQuality(cJSON *root, EqmMap map)
   AddCount(root, "folds", distortion->folds);
 }
 
+/* Only where they were asked for. */
+static void AddHessian(cJSON *root, EqmMap map)
+{
+  cJSON *list = cJSON_AddArrayToObject(root, "hessian_eigenvalues");
+
+  for (PetscInt k = 0; k < map->num_hessian_eigenvalues; k++)
+    (void)cJSON_AddItemToArray(list, cJSON_CreateNumber((double)map->hessian_eigenvalues[k]));
+}
+
 static void AddCost(cJSON *root, EqmMap map)
 {
   static const struct {
@@ -158,6 +167,7 @@ static PetscErrorCode WriteOnRoot(EqmMap map, const char *name, char *message, s
   AddRun(root, map);
   if (map->mended) AddRepair(root, &map->repair);
   AddQuality(root, map);
+  if (map->hessian_eigenvalues) AddHessian(root, map);
   AddCost(root, map);
   text = cJSON_Print(root);
   cJSON_Delete(root);

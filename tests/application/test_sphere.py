@@ -116,6 +116,20 @@ def check_noise(program, vertices, cells):
     assert refused.returncode == 2 and "-noise" in refused.stderr, refused.stderr
 
 
+def check_hessian(program):
+    """Eigenvalues in summary and result, or, built without SLEPc, a refusal before any work."""
+    result = program.run("sphere", "mesh.obj", "-o", "hessian.h5", "-summary", "hessian.json", "-hessian_eigenvalues", 4)
+    if result.returncode == 2:
+        assert "SLEPc" in result.stderr and not os.path.exists(program.file("hessian.h5")), result.stderr
+        return
+    values = json.loads(program.read("hessian.json"))["hessian_eigenvalues"]
+    with h5py.File(program.file("hessian.h5"), "r") as file:
+        assert numpy.allclose(file["/map/hessian_eigenvalues"][...], values, rtol=1e-14)
+    assert len(values) == 4 and values == sorted(values) and -1e-2 < values[0] <= 1e-9, values
+    assert "smallest eigenvalues" in result.stdout and result.returncode == 0
+    assert program.run("sphere", "mesh.obj", "-o", "refused.h5", "-hessian_eigenvalues", -1).returncode == 2
+
+
 def check_refused(program, name, *words):
     """Exit code 3, one message that says why, no result."""
     result = program.run("sphere", name, "-o", "refused.h5")
@@ -141,6 +155,7 @@ def main():
         check_measure(program, summary)
         check_mirrored(program, vertices, cells)
         check_noise(program, vertices, cells)
+        check_hessian(program)
         write_obj(program, "open.obj", vertices, cells[1:])
         check_refused(program, "open.obj", "sphere", "boundary")
         program.succeed("generate", "torus", "-n", 300, "-o", "torus.obj", ranks=1)
