@@ -1,12 +1,19 @@
 /* What a user sees while it runs: one line that renews itself on a terminal, plain lines now and then in a log. */
 #include "method/method.h"
+#include <stdlib.h>
 #include <unistd.h>
 
 /* Plain lines come at most this often, in seconds, so that a batch log stays readable. */
 static const PetscReal log_interval = 2.;
 
+/* A launcher may hand its ranks a pseudo-terminal though its own output goes to a file: under one, lines are plain. */
 static PetscBool OnTerminal(void)
 {
+  static const char *const launchers[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"};
+
+  for (size_t k = 0; k < sizeof(launchers) / sizeof(launchers[0]); k++) {
+    if (getenv(launchers[k])) return PETSC_FALSE;
+  }
   return (PetscBool)isatty(STDOUT_FILENO);
 }
 
