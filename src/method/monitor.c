@@ -68,6 +68,7 @@ PetscErrorCode EqmMonitorRow(EqmSolver solver)
   if (solver->settings.quiet) PetscFunctionReturn(0);
   if (OnTerminal() || solver->num_history == 1 || row->seconds >= solver->last_shown + log_interval) {
     solver->last_shown = row->seconds;
+    solver->rows_shown = solver->num_history;
     PetscCall(PrintRow(solver, row, PETSC_FALSE));
   }
   PetscFunctionReturn(0);
@@ -78,7 +79,9 @@ PetscErrorCode EqmMonitorEnd(EqmSolver solver)
 {
   PetscFunctionBegin;
   if (solver->settings.quiet) PetscFunctionReturn(0);
-  PetscCall(PrintRow(solver, &solver->history[solver->num_history - 1], PETSC_TRUE));
+  if (solver->rows_shown < solver->num_history || OnTerminal()) {
+    PetscCall(PrintRow(solver, &solver->history[solver->num_history - 1], PETSC_TRUE));
+  }
   PetscCall(PetscPrintf(solver->comm, "%s%s: %s\n", OnTerminal() ? "\n" : "", EqmStatusName(solver->status),
                         solver->message));
   PetscFunctionReturn(0);
