@@ -64,6 +64,7 @@ struct _p_EqmSolver {
   EqmHistoryRow *history;
   PetscInt num_history, most_history;
   PetscReal last_shown;                  /* seconds when the last row was printed */
+  PetscInt rows_shown; /* num_history at that time */
   PetscInt64 unfolded_from, unfolded_to; /* folds before and after the last unfolding; 0, 0: none was needed */
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
