@@ -107,22 +107,26 @@ PetscErrorCode EqmLedgerGetWork(EqmLedger ledger, EqmWork **work)
   PetscFunctionReturn(0);
 }
 
-/* Seconds so far: per phase, per kind of work, in all; the largest over the ranks. NULL for what is not wanted.
-   Collective. */
+/* Seconds so far: per phase, per kind of work, in all. NULL for what is not wanted. Phases and the total are rank 0's,
+   so that they add up (phases are collective: the ranks differ by how long they wait for each other); of the kinds of
+   work it is the largest over the ranks. Collective. */
 PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PHASES], PetscReal events[EQM_NUM_EVENTS],
                                    PetscReal *total)
 {
   PetscLogDouble now;
-  PetscReal mine;
 
   PetscFunctionBegin;
   PetscCall(PetscTime(&now));
-  mine = now - ledger->created;
-  if (phases)
-    PetscCall(MPIU_Allreduce(ledger->phase_seconds, phases, EQM_NUM_PHASES, MPIU_REAL, MPIU_MAX, ledger->comm));
+  if (phases) {
+    PetscCall(PetscArraycpy(phases, ledger->phase_seconds, EQM_NUM_PHASES));
+    PetscCallMPI(MPI_Bcast(phases, EQM_NUM_PHASES, MPIU_REAL, 0, ledger->comm));
+  }
   if (events)
     PetscCall(MPIU_Allreduce(ledger->event_seconds, events, EQM_NUM_EVENTS, MPIU_REAL, MPIU_MAX, ledger->comm));
-  if (total) PetscCall(MPIU_Allreduce(&mine, total, 1, MPIU_REAL, MPIU_MAX, ledger->comm));
+  if (total) {
+    *total = now - ledger->created;
+    PetscCallMPI(MPI_Bcast(total, 1, MPIU_REAL, 0, ledger->comm));
+  }
   PetscFunctionReturn(0);
 }
 
