@@ -23,7 +23,6 @@ PETSC_INTERN PetscErrorCode EqmSoupComputeChecksum(EqmSoup soup);
 PETSC_INTERN PetscErrorCode EqmStarsCollect(EqmSoup soup, const PetscInt *owner_of_slab, EqmStars *stars);
 PETSC_INTERN PetscErrorCode EqmStarsReset(EqmStars *stars);
 PETSC_INTERN PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *vertices, PetscSF *sf);
-PETSC_INTERN PetscErrorCode EqmSoupSlabOwner(EqmSoup soup, PetscInt **starts);
 PETSC_INTERN PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells,
                                             const PetscInt *cells, EqmGraph *graph);
 PETSC_INTERN PetscErrorCode EqmGraphReset(EqmGraph *graph);

@@ -47,7 +47,6 @@ struct _p_EqmSolver {
   EqmDomain domain;
   EqmOrdering ordering;
   EqmLinear scalar; /* one unknown per vertex: Laplacians of all kinds */
-  PetscInt *scalar_start;
   unsigned char *scalar_count;
   char target[16];
   EqmSettings settings;
