@@ -65,6 +65,10 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
       PetscCall(EqmLmSolveForStep(solver));
       PetscCall(EqmLmSolveForCurve(solver, &ratio));
       PetscCall(EqmLmPredictedDecrease(solver, &predicted));
+      if (lm->epsilon > 0. && predicted <= 1e-12 * lm->now.objective) { /* what is left is rounding */
+        *outcome = EQM_STEP_CONVERGED;
+        PetscFunctionReturn(0);
+      }
       PetscCall(EqmLmSearch(solver, ratio, predicted, &t));
     }
     if (t == 0.) lm->mu = PetscMax(10. * lm->mu, 1e-16);

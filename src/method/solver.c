@@ -153,6 +153,11 @@ static PetscErrorCode Iterate(EqmSolver solver)
   while (!stop) {
     EqmStep outcome;
     PetscCall(solver->method->step(solver, &outcome));
+    if (outcome == EQM_STEP_CONVERGED) {
+      solver->status = EQM_STATUS_CONVERGED;
+      PetscCall(PetscStrncpy(solver->message, "the next step would change the objective by rounding only", sizeof(solver->message)));
+      break;
+    }
     if (outcome == EQM_STEP_STALLED) {
       solver->status = EQM_STATUS_NOT_CONVERGED;
       PetscCall(PetscStrncpy(solver->message,
