@@ -23,7 +23,8 @@ struct _p_EqmMesh {
 
   PetscInt num_local_cells; /* those that this rank owns come first */
   PetscInt num_owned_cells; /* a cell belongs to the owner of its vertex of smallest global number */
-  PetscInt *cells;          /* cell_size * num_local_cells, local vertex numbers, orientation kept */
+  PetscInt *cells; /* cell_size * num_local_cells, local vertex numbers; triangles turn as in the file, the volume of
+                              tetrahedra is positive */
 
   PetscReal *position; /* 3 * num_local: the surface or solid itself */
   PetscReal *weight;   /* per local cell: measure times density, sum over owned cells of all ranks = 1 */
@@ -68,5 +69,24 @@ PETSC_EXTERN PetscErrorCode EqmMeshCellsToInput(EqmMesh mesh, EqmSoup soup, Pets
 /* The other way: from slabs of the soup to all local vertices, ghosts included. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *slab,
                                                      PetscReal *local);
+
+/* The closed surface around a solid, as a mesh of its own: its vertices are the solid's boundary vertices in input
+   order, its triangles look outward. */
+typedef struct _p_EqmSurface *EqmSurface;
+struct _p_EqmSurface {
+  EqmSoup soup;     /* the same for any number of ranks */
+  PetscSF vertices; /* roots: the vertices of the soup's slab; leaves: the solid's local boundary vertices */
+};
+
+/* The surface of a mesh of tetrahedra. Errors: EQM_ERR_USAGE (a mesh of triangles). Collective. */
+PETSC_EXTERN PetscErrorCode EqmSurfaceCreate(EqmMesh solid, EqmSurface *surface);
+PETSC_EXTERN PetscErrorCode EqmSurfaceDestroy(EqmSurface *surface);
+/* Carry `width` reals per vertex of the surface's slab to the solid's local boundary vertices, ghosts included; what
+   stands at other vertices stays. Collective. */
+PETSC_EXTERN PetscErrorCode EqmSurfaceToSolid(EqmSurface surface, PetscInt width, const PetscReal *slab,
+                                              PetscReal *local);
+/* The other way, from all local vertices of the solid, ghosts up to date. Collective. */
+PETSC_EXTERN PetscErrorCode EqmSurfaceFromSolid(EqmSurface surface, PetscInt width, const PetscReal *local,
+                                                PetscReal *slab);
 
 #endif

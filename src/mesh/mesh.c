@@ -1,5 +1,6 @@
 /* The distributed mesh: made from a soup, destroyed, its ghosts refreshed. */
 #include "mesh/build.h"
+#include "energy/kernel.h"
 
 /* Local numbers: the input numbers of owned vertices (sorted), then those of the ghosts. */
 static PetscErrorCode CollectVertices(const EqmStars *stars, PetscInt rank, PetscInt *num_owned, PetscInt **owned,
@@ -190,6 +191,20 @@ static PetscErrorCode TakeStars(EqmMesh mesh, EqmSoup soup, const EqmStars *star
   PetscFunctionReturn(0);
 }
 
+/* Turn tetrahedra over whose volume is negative: some programs number all of them that way. */
+static void OrientTetrahedra(EqmMesh mesh)
+{
+  const PetscReal *const p = mesh->position;
+
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    PetscInt *const v = mesh->cells + 4 * c, last = v[3];
+
+    if (EqmVolume(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2], p + 3 * v[3]) >= 0.) continue;
+    v[3] = v[2];
+    v[2] = last;
+  }
+}
+
 PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *out)
 {
   EqmMesh mesh;
@@ -213,6 +228,7 @@ PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *out)
   PetscCall(EqmStarsReset(&stars));
   PetscCall(PetscMalloc1(3 * mesh->num_local, &mesh->position));
   PetscCall(EqmMeshVerticesFromInput(mesh, soup, 3, soup->vertices, mesh->position));
+  if (mesh->cell_size == 4) OrientTetrahedra(mesh);
   PetscCall(EqmMeshFindBoundary(mesh));
   PetscCall(EqmMeshMakeBlocks(mesh));
   PetscCall(EqmMeshMeasure(mesh, density));

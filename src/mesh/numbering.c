@@ -1,23 +1,22 @@
 /* Between the mesh's numbering and the input's. */
 #include "mesh/build.h"
 
-typedef enum { TO_INPUT, FROM_INPUT } Direction;
-
-static PetscErrorCode Move(PetscSF sf, PetscInt width, Direction direction, PetscReal *slab, PetscReal *owned)
+/* Move `width` reals per leaf of a star forest between its roots (a slab) and its leaves. Collective. */
+PetscErrorCode EqmMoveReals(PetscSF sf, PetscInt width, EqmDirection direction, PetscReal *slab, PetscReal *leaves)
 {
-  MPI_Datatype type;
+  MPI_Datatype row;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &type));
-  PetscCallMPI(MPI_Type_commit(&type));
-  if (direction == TO_INPUT) {
-    PetscCall(PetscSFReduceBegin(sf, type, owned, slab, MPI_REPLACE));
-    PetscCall(PetscSFReduceEnd(sf, type, owned, slab, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &row));
+  PetscCallMPI(MPI_Type_commit(&row));
+  if (direction == EQM_TO_SLAB) {
+    PetscCall(PetscSFReduceBegin(sf, row, leaves, slab, MPI_REPLACE));
+    PetscCall(PetscSFReduceEnd(sf, row, leaves, slab, MPI_REPLACE));
   } else {
-    PetscCall(PetscSFBcastBegin(sf, type, slab, owned, MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(sf, type, slab, owned, MPI_REPLACE));
+    PetscCall(PetscSFBcastBegin(sf, row, slab, leaves, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf, row, slab, leaves, MPI_REPLACE));
   }
-  PetscCallMPI(MPI_Type_free(&type));
+  PetscCallMPI(MPI_Type_free(&row));
   PetscFunctionReturn(0);
 }
 
@@ -28,7 +27,7 @@ PetscErrorCode EqmMeshVerticesToInput(EqmMesh mesh, EqmSoup soup, PetscInt width
 
   PetscFunctionBegin;
   PetscCall(EqmSoupSlabSF(soup, mesh->num_owned, mesh->vertex_input, &sf));
-  PetscCall(Move(sf, width, TO_INPUT, slab, (PetscReal *)owned));
+  PetscCall(EqmMoveReals(sf, width, EQM_TO_SLAB, slab, (PetscReal *)owned));
   PetscCall(PetscSFDestroy(&sf));
   PetscFunctionReturn(0);
 }
@@ -40,7 +39,7 @@ PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt wid
 
   PetscFunctionBegin;
   PetscCall(EqmSoupSlabSF(soup, mesh->num_owned, mesh->vertex_input, &sf));
-  PetscCall(Move(sf, width, FROM_INPUT, (PetscReal *)slab, local));
+  PetscCall(EqmMoveReals(sf, width, EQM_FROM_SLAB, (PetscReal *)slab, local));
   PetscCall(PetscSFDestroy(&sf));
   PetscCall(EqmMeshUpdateGhosts(mesh, width, local));
   PetscFunctionReturn(0);
@@ -55,7 +54,7 @@ PetscErrorCode EqmMeshCellsToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, c
   PetscCall(PetscLayoutCreateFromSizes(soup->comm, soup->cell_end - soup->cell_start, soup->num_cells, 1, &layout));
   PetscCall(PetscSFCreate(soup->comm, &sf));
   PetscCall(PetscSFSetGraphLayout(sf, layout, mesh->num_owned_cells, NULL, PETSC_OWN_POINTER, mesh->cell_input));
-  PetscCall(Move(sf, width, TO_INPUT, slab, (PetscReal *)owned));
+  PetscCall(EqmMoveReals(sf, width, EQM_TO_SLAB, slab, (PetscReal *)owned));
   PetscCall(PetscSFDestroy(&sf));
   PetscCall(PetscLayoutDestroy(&layout));
   PetscFunctionReturn(0);

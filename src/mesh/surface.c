@@ -1,0 +1,166 @@
+/* The closed surface around a solid, as a mesh of its own whose vertices know their places in the solid. */
+#include "mesh/build.h"
+#include "base/exchange.h"
+
+/* Who is who on the surface. */
+typedef struct {
+  PetscLayout layout;  /* of the surface's vertices */
+  PetscInt num_leaves; /* boundary vertices among the solid's local ones */
+  PetscInt *leaf;      /* their local numbers */
+  PetscInt *number;    /* their numbers on the surface */
+} Numbering;
+
+/* Input numbers of all local vertices of the solid. */
+static PetscErrorCode InputNumbers(EqmMesh solid, PetscInt *input)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(input, solid->vertex_input, solid->num_owned));
+  PetscCall(PetscSFBcastBegin(solid->halo, MPIU_INT, input, input + solid->num_owned, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(solid->halo, MPIU_INT, input, input + solid->num_owned, MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+/* Count the boundary vertices in input order, which no distribution changes: even shares of the input's numbers are
+   ticked off, counted and asked again. */
+static PetscErrorCode NumberVertices(EqmMesh solid, Numbering *numbering)
+{
+  PetscInt *input, *number, count = 0, first = 0;
+  PetscLayout layout;
+  PetscSF directory;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(solid->num_local, &input));
+  PetscCall(InputNumbers(solid, input));
+  for (PetscInt v = 0; v < solid->num_local; v++) numbering->num_leaves += solid->on_boundary[v];
+  PetscCall(PetscMalloc2(numbering->num_leaves, &numbering->leaf, numbering->num_leaves, &numbering->number));
+  for (PetscInt v = 0, k = 0; v < solid->num_local; v++) {
+    if (!solid->on_boundary[v]) continue;
+    numbering->leaf[k] = v;
+    numbering->number[k] = 1;
+    input[k++] = input[v];
+  }
+  PetscCall(PetscLayoutCreateFromSizes(solid->comm, PETSC_DECIDE, solid->soup_vertices, 1, &layout));
+  PetscCall(PetscSFCreate(solid->comm, &directory));
+  PetscCall(PetscSFSetGraphLayout(directory, layout, numbering->num_leaves, NULL, PETSC_OWN_POINTER, input));
+  PetscCall(PetscCalloc1(layout->n, &number));
+  PetscCall(PetscSFReduceBegin(directory, MPIU_INT, numbering->number, number, MPI_REPLACE));
+  PetscCall(PetscSFReduceEnd(directory, MPIU_INT, numbering->number, number, MPI_REPLACE));
+  for (PetscInt i = 0; i < layout->n; i++) count += number[i];
+  PetscCallMPI(MPI_Exscan(&count, &first, 1, MPIU_INT, MPI_SUM, solid->comm));
+  if (solid->rank == 0) first = 0;
+  for (PetscInt i = 0; i < layout->n; i++) {
+    if (number[i]) number[i] = first++;
+  }
+  PetscCall(PetscSFBcastBegin(directory, MPIU_INT, number, numbering->number, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(directory, MPIU_INT, number, numbering->number, MPI_REPLACE));
+  PetscCall(PetscSFDestroy(&directory));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscCall(PetscFree(number));
+  PetscCall(PetscFree(input));
+  PetscCall(PetscLayoutCreateFromSizes(solid->comm, PETSC_DECIDE, solid->num_boundary_vertices, 1, &numbering->layout));
+  PetscFunctionReturn(0);
+}
+
+static int CompareTriangles(const void *a, const void *b)
+{
+  const PetscInt *const s = (const PetscInt *)a, *const t = (const PetscInt *)b;
+
+  for (int k = 0; k < 3; k++) {
+    if (s[k] != t[k]) return s[k] < t[k] ? -1 : 1;
+  }
+  return 0;
+}
+
+/* The surface's triangles, each beginning with its lowest vertex, in ascending order; that of the lowest vertex decides
+   which rank gets it. */
+static PetscErrorCode CollectTriangles(EqmMesh solid, const Numbering *numbering, PetscInt *num_cells, PetscInt **cells)
+{
+  PetscInt *number, *records, count = 0;
+  PetscMPIInt *destination;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(solid->num_local, &number, 3 * solid->num_boundary_facets, &records,
+                         solid->num_boundary_facets, &destination));
+  for (PetscInt k = 0; k < numbering->num_leaves; k++) number[numbering->leaf[k]] = numbering->number[k];
+  for (PetscInt f = 0; f < solid->num_boundary_facets; f++) {
+    const PetscInt *const corner = solid->boundary_facets + 3 * f;
+    int owner = 0, low = 0;
+
+    for (int k = 1; k < 3; k++) {
+      if (solid->global[corner[k]] < solid->global[corner[owner]]) owner = k;
+      if (number[corner[k]] < number[corner[low]]) low = k;
+    }
+    if (corner[owner] >= solid->num_owned) continue; /* another rank's */
+    for (int k = 0; k < 3; k++) records[3 * count + k] = number[corner[(low + k) % 3]];
+    PetscCall(PetscLayoutFindOwner(numbering->layout, records[3 * count], &destination[count]));
+    count++;
+  }
+  PetscCall(EqmExchange(solid->comm, count, 3, destination, records, num_cells, cells));
+  qsort(*cells, (size_t)*num_cells, 3 * sizeof(PetscInt), CompareTriangles);
+  PetscCall(PetscFree3(number, records, destination));
+  PetscFunctionReturn(0);
+}
+
+/* EqmSurfaceCreate - the surface of a solid as a mesh of its own.
+
+   Collective. solid - a mesh of tetrahedra. The surface's vertices are the solid's boundary vertices in input order,
+   its triangles look outward; both are the same for any number of ranks and dealt in contiguous slabs. Whether it is
+   one closed surface of genus 0 is the diagnosis's question (EqmSoupDiagnose of the solid tells). Errors:
+   EQM_ERR_USAGE if `solid` is a surface itself. */
+PetscErrorCode EqmSurfaceCreate(EqmMesh solid, EqmSurface *surface)
+{
+  Numbering numbering = {0};
+  PetscInt num_cells, *cells;
+  PetscReal *vertices;
+  EqmSurface s;
+
+  PetscFunctionBegin;
+  if (solid->cell_size != 4) {
+    EqmFail(solid->comm, EQM_ERR_USAGE, "only a solid has a surface around it, and this mesh is of triangles");
+  }
+  PetscCall(PetscNew(&s));
+  PetscCall(NumberVertices(solid, &numbering));
+  PetscCall(PetscSFCreate(solid->comm, &s->vertices));
+  PetscCall(PetscSFSetGraphLayout(s->vertices, numbering.layout, numbering.num_leaves, numbering.leaf,
+                                  PETSC_COPY_VALUES, numbering.number));
+  PetscCall(PetscMalloc1(3 * numbering.layout->n, &vertices));
+  PetscCall(EqmSurfaceFromSolid(s, 3, solid->position, vertices));
+  PetscCall(CollectTriangles(solid, &numbering, &num_cells, &cells));
+  PetscCall(EqmSoupCreateFromSlabs(solid->comm, 3, numbering.layout->n, vertices, num_cells, cells,
+                                   "the surface of the solid", &s->soup));
+  PetscCall(PetscLayoutDestroy(&numbering.layout));
+  PetscCall(PetscFree2(numbering.leaf, numbering.number));
+  *surface = s;
+  PetscFunctionReturn(0);
+}
+
+/* EqmSurfaceToSolid - carry values at the surface's vertices to the solid's boundary vertices.
+
+   Collective. slab - `width` reals per vertex of the slab of surface->soup; local - `width` reals per local vertex of
+   the solid, of which those of the boundary, ghosts included, are set and the others stay. */
+PetscErrorCode EqmSurfaceToSolid(EqmSurface surface, PetscInt width, const PetscReal *slab, PetscReal *local)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMoveReals(surface->vertices, width, EQM_FROM_SLAB, (PetscReal *)slab, local));
+  PetscFunctionReturn(0);
+}
+
+/* EqmSurfaceFromSolid - the other way: from all local vertices of the solid, ghosts up to date, to the slab of the
+   surface. Collective. */
+PetscErrorCode EqmSurfaceFromSolid(EqmSurface surface, PetscInt width, const PetscReal *local, PetscReal *slab)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMoveReals(surface->vertices, width, EQM_TO_SLAB, slab, (PetscReal *)local));
+  PetscFunctionReturn(0);
+}
+
+/* EqmSurfaceDestroy - free a surface. Collective; NULL is fine. */
+PetscErrorCode EqmSurfaceDestroy(EqmSurface *surface)
+{
+  PetscFunctionBegin;
+  if (!*surface) PetscFunctionReturn(0);
+  PetscCall(EqmSoupDestroy(&(*surface)->soup));
+  PetscCall(PetscSFDestroy(&(*surface)->vertices));
+  PetscCall(PetscFree(*surface));
+  PetscFunctionReturn(0);
+}
