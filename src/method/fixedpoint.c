@@ -152,10 +152,6 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 const EqmMethod EqmMethodFixedPoint = {
     .name = "fixed-point",
     .purpose = "stretch energy minimisation by fixed-point iteration (000 (14), 001 Algorithm 2, 002 Algorithm 1)",
-    .default_start = "harmonic",
-    .sphere_start = "linear",
-    .default_max_it = 100,
-    .default_energy_rtol = 1e-4,
     .set_up = SetUp,
     .step = Step,
     .destroy = Destroy,

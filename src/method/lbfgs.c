@@ -125,10 +125,6 @@ static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsOb
 const EqmMethod EqmMethodLbfgs = {
     .name = "lbfgs",
     .purpose = "limited-memory quasi-Newton steps in the Laplacian metric: scalar factorisations only",
-    .default_start = "guarded",
-    .sphere_start = "guarded",
-    .default_max_it = 200,
-    .default_energy_rtol = 1e-3,
     .options = Options,
     .set_up = SetUp,
     .step = Step,

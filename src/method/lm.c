@@ -197,11 +197,6 @@ static PetscErrorCode Destroy(EqmSolver solver)
 const EqmMethod EqmMethodLm = {
     .name = "lm",
     .purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration: the house's own",
-    .default_start = "guarded",
-    .sphere_start = "guarded",
-    .default_max_it = 60,
-    .default_energy_rtol = .05,
-    .default_ratio_tol = 1e-4,
     .set_up = SetUp,
     .step = Step,
     .destroy = Destroy,

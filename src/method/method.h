@@ -4,6 +4,7 @@
 
 #include <equimap/solver.h>
 #include "linalg/linalg.h"
+#include "method/problem.h"
 
 /* What a step came to. */
 typedef enum {
@@ -12,18 +13,14 @@ typedef enum {
   EQM_STEP_STALLED    /* no step decreases the function any more */
 } EqmStep;
 
-/* A method: one row in the table of methods.c, one file. */
-typedef struct {
+/* A method: one file; problem.c says which problems offer it. */
+struct EqmMethod {
   const char *name, *purpose;
-  const char *sphere_start;  /* default on the sphere; NULL: the method does not apply there */
-  const char *default_start; /* unless -start says otherwise */
-  PetscInt default_max_it;
-  PetscReal default_energy_rtol, default_ratio_tol;
   PetscErrorCode (*options)(EqmSolver, PetscOptionItems *); /* may be NULL */
   PetscErrorCode (*set_up)(EqmSolver);                      /* solver->place holds the start */
   PetscErrorCode (*step)(EqmSolver, EqmStep *); /* leaves place, image, step_length, gradient_norm, objective */
   PetscErrorCode (*destroy)(EqmSolver);
-} EqmMethod;
+};
 
 typedef struct {
   char method[32], start[32];
@@ -50,6 +47,7 @@ struct _p_EqmSolver {
   unsigned char *scalar_count;
   char target[16];
   EqmSettings settings;
+  const EqmProblem *problem;
   const EqmMethod *method;
   void *data; /* the method's own */
 
@@ -63,15 +61,13 @@ struct _p_EqmSolver {
   EqmHistoryRow *history;
   PetscInt num_history, most_history;
   PetscReal last_shown;                  /* seconds when the last row was printed */
-  PetscInt rows_shown; /* num_history at that time */
+  PetscInt rows_shown;                   /* num_history at that time */
   PetscInt64 unfolded_from, unfolded_to; /* folds before and after the last unfolding; 0, 0: none was needed */
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
 };
 
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm;
-PETSC_INTERN PetscErrorCode EqmMethodFind(const char *name, const EqmMethod **method);
-PETSC_INTERN PetscErrorCode EqmMethodNames(char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 
 /* Refresh solver->image and solver->totals from solver->place. Collective. */
@@ -111,8 +107,10 @@ PETSC_INTERN PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric)
 PETSC_INTERN PetscErrorCode EqmMetricApply(EqmSolver solver, EqmMetric metric, Vec g, Vec h);
 
 /* ---- first maps (src/start/start.c) */
-PETSC_INTERN PetscErrorCode EqmStartFind(const char *target, const char *name);
-PETSC_INTERN PetscErrorCode EqmStartNames(const char *target, char *text, size_t length);
+/* Fail with EQM_ERR_USAGE if the problem has no start of this name. Collective. */
+PETSC_INTERN PetscErrorCode EqmStartFind(const EqmProblem *problem, const char *name);
+/* The names of all starts of a family, separated by commas. Not collective. */
+PETSC_INTERN PetscErrorCode EqmStartNames(EqmStartFamily family, char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmStart(EqmSolver solver);
 /* ---- first maps to the sphere (src/start/sphere.c) */
 /* Laplacian linearisation (001 section 6): one triangle pinned in the plane, the rest harmonic, onto the sphere.

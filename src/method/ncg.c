@@ -208,10 +208,6 @@ static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsOb
 const EqmMethod EqmMethodNcg = {
     .name = "ncg",
     .purpose = "preconditioned nonlinear conjugate gradients (000 Algorithm 1)",
-    .default_start = "fixed-point",
-    .sphere_start = "guarded",
-    .default_max_it = 100,
-    .default_energy_rtol = 1e-4,
     .options = Options,
     .set_up = SetUp,
     .step = Step,

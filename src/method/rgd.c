@@ -170,10 +170,6 @@ static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsOb
 const EqmMethod EqmMethodRgd = {
     .name = "rgd",
     .purpose = "Riemannian gradient descent (001 Algorithm 1)",
-    .default_start = "guarded",
-    .sphere_start = "descending",
-    .default_max_it = 100,
-    .default_energy_rtol = 1e-6,
     .options = Options,
     .set_up = SetUp,
     .step = Step,

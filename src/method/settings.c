@@ -35,14 +35,12 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
 {
   EqmSettings *const set = &solver->settings;
   char methods[EQM_MESSAGE_MAX], starts[EQM_MESSAGE_MAX];
-  PetscInt num_corners = 4;
-  static const EqmMethod *const with_options[] = {&EqmMethodNcg, &EqmMethodLbfgs, &EqmMethodRgd};
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(methods, "the iteration: ", sizeof(methods)));
-  PetscCall(EqmMethodNames(methods + 15, sizeof(methods) - 15));
+  PetscCall(EqmProblemMethodNames(solver->target, methods + 15, sizeof(methods) - 15));
   PetscCall(PetscStrncpy(starts, "the first map: ", sizeof(starts)));
-  PetscCall(EqmStartNames(solver->target, starts + 15, sizeof(starts) - 15));
+  PetscCall(EqmStartNames(solver->problem->starts, starts + 15, sizeof(starts) - 15));
   PetscCall(PetscOptionsString("-method", methods, "EqmSolverSetFromOptions", set->method, set->method,
                                sizeof(set->method), NULL));
   PetscCall(PetscOptionsString("-start", starts, "EqmSolverSetFromOptions", set->start, set->start, sizeof(set->start),
@@ -73,50 +71,41 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
                              "weight of the angle energy beside the area energy; .01 gives one nearly unique, smoother "
                              "map (-1: the method's own, 0: none)",
                              "EqmSolverSetFromOptions", set->balance, &set->balance, NULL));
-  PetscCall(PetscOptionsIntArray("-corners",
-                                 "square: four boundary vertices (input numbers from 0) for (0,0), (1,0), (1,1), (0,1)",
-                                 "EqmSolverSetFromOptions", set->corners, &num_corners, &set->has_corners));
-  if (set->has_corners && num_corners != 4)
-    EqmFail(solver->comm, EQM_ERR_USAGE, "-corners: give four vertex numbers, i,j,k,l; there are %" PetscInt_FMT,
-            num_corners);
   PetscCall(PetscOptionsBool("-quiet", "no progress", "EqmSolverSetFromOptions", set->quiet, &set->quiet, NULL));
-  for (size_t k = 0; k < sizeof(with_options) / sizeof(with_options[0]); k++)
-    PetscCall(with_options[k]->options(solver, PetscOptionsObject));
+  PetscCall(EqmProblemAskOptions(solver, PetscOptionsObject));
   PetscFunctionReturn(0);
 }
 
-/* The method's own start unless one was named; a method that cannot do the target is refused. */
-static PetscErrorCode ChooseStart(EqmSolver solver)
+/* What the settings leave open is taken as the problem offers it with the method. */
+static PetscErrorCode TakeOffer(EqmSolver solver, const EqmOffer *offer)
 {
   EqmSettings *const set = &solver->settings;
-  const char *start = solver->method->default_start;
-  PetscBool sphere;
 
   PetscFunctionBegin;
-  PetscCall(PetscStrcmp(solver->target, "sphere", &sphere));
-  if (sphere) start = solver->method->sphere_start;
-  if (!start)
-    EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s is not for the %s", solver->method->name, solver->target);
-  if (sphere && set->balance > 0.) EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is for the disk and the square");
-  if (!set->start[0]) PetscCall(PetscStrncpy(set->start, start, sizeof(set->start)));
+  solver->method = offer->method;
+  if (!set->start[0]) PetscCall(PetscStrncpy(set->start, offer->start, sizeof(set->start)));
+  if (set->max_it < 0) set->max_it = offer->max_it;
+  if (set->ratio_tol < 0.) set->ratio_tol = set->energy_rtol == 0. ? 0. : offer->ratio_tol;
+  if (set->energy_rtol < 0.) set->energy_rtol = offer->energy_rtol;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver)
 {
   EqmSettings *const set = &solver->settings;
+  const EqmOffer *offer;
 
   PetscFunctionBegin;
   PetscOptionsBegin(solver->comm, NULL, "Map", NULL);
   PetscCall(Ask(solver, PetscOptionsObject));
   PetscOptionsEnd();
   PetscCall(Check(solver->comm, set));
-  PetscCall(EqmMethodFind(set->method, &solver->method));
-  PetscCall(ChooseStart(solver));
-  PetscCall(EqmStartFind(solver->target, set->start));
-  if (set->max_it < 0) set->max_it = solver->method->default_max_it;
-  if (set->ratio_tol < 0.) set->ratio_tol = set->energy_rtol == 0. ? 0. : solver->method->default_ratio_tol;
-  if (set->energy_rtol < 0.) set->energy_rtol = solver->method->default_energy_rtol;
+  if (!solver->mesh && !EqmProblemIsSettled(solver->target)) PetscFunctionReturn(0); /* the mesh will tell */
+  if (set->balance > 0. && !solver->problem->takes_balance)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for the %s", solver->problem->place);
+  PetscCall(EqmProblemFindOffer(solver->comm, solver->problem, set->method, &offer));
+  PetscCall(TakeOffer(solver, offer));
+  PetscCall(EqmStartFind(solver->problem, set->start));
   PetscFunctionReturn(0);
 }
 
@@ -127,6 +116,7 @@ PetscErrorCode EqmSolverHelp(MPI_Comm comm, const char *target)
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(solver.target, target, sizeof(solver.target)));
   PetscCall(EqmSettingsDefault(&solver.settings));
+  PetscCall(EqmProblemFind(comm, target, NULL, &solver.problem));
   PetscCall(EqmSolverSetFromOptions(&solver));
   PetscFunctionReturn(0);
 }

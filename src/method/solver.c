@@ -1,6 +1,5 @@
 /* The loop that all methods share: start, iterate, judge, stop. */
 #include "method/method.h"
-#include <string.h>
 
 PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *out)
 {
@@ -12,6 +11,7 @@ PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *out)
   solver->mesh = mesh;
   PetscCall(PetscStrncpy(solver->target, target, sizeof(solver->target)));
   PetscCall(EqmSettingsDefault(&solver->settings));
+  PetscCall(EqmProblemFind(solver->comm, target, mesh, &solver->problem));
   *out = solver;
   PetscFunctionReturn(0);
 }
@@ -44,14 +44,8 @@ PetscErrorCode EqmSolverLook(EqmSolver solver)
 
 PetscErrorCode EqmSolverSum(EqmSolver solver)
 {
-  PetscReal *scratch;
-
   PetscFunctionBegin;
-  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
-  if (!solver->domain->curved_image) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &scratch));
-  PetscCall(EqmImageFolds(solver->domain, &solver->place, scratch, &solver->totals.folds));
-  PetscCall(PetscFree(scratch));
+  PetscCall(solver->problem->sum(solver));
   PetscFunctionReturn(0);
 }
 
@@ -62,15 +56,7 @@ static PetscErrorCode Begin(EqmSolver solver)
 
   PetscFunctionBegin;
   PetscCall(EqmPhaseBegin(mesh->ledger, EQM_PHASE_START));
-  if (!strcmp(solver->target, "disk"))
-    PetscCall(EqmDomainCreateDisk(mesh, &solver->domain));
-  else if (!strcmp(solver->target, "square"))
-    PetscCall(
-        EqmDomainCreateSquare(mesh, solver->settings.has_corners ? solver->settings.corners : NULL, &solver->domain));
-  else if (!strcmp(solver->target, "sphere"))
-    PetscCall(EqmDomainCreateSphere(mesh, &solver->domain));
-  else
-    EqmFail(solver->comm, EQM_ERR_USAGE, "there is no target '%s'; choose disk, square or sphere", solver->target);
+  PetscCall(solver->problem->create_domain(solver, &solver->domain));
   PetscCall(EqmOrderingCreate(mesh, &solver->ordering));
   PetscCall(EqmPlaceCreate(solver->domain, &solver->place));
   PetscCall(PetscMalloc1(mesh->num_local_cells, &solver->image));
@@ -117,8 +103,8 @@ static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
                             "the objective fell by less than %g %% per iteration over the last %" PetscInt_FMT
                             " iterations",
                             100. * (double)set->energy_rtol, set->stagnation));
-    if (solver->totals.energy >
-        .25 * solver->totals.total) { /* ratios off by half, root mean square: that is no map of equal areas */
+    if (solver->problem->poor_energy > 0. &&
+        solver->totals.energy > solver->problem->poor_energy * solver->totals.total) {
       solver->status = EQM_STATUS_NOT_CONVERGED;
       PetscCall(PetscStrlcat(solver->message,
                              ", far from equal areas: the target may not suit the mesh (corners? slivers?)",
@@ -155,7 +141,8 @@ static PetscErrorCode Iterate(EqmSolver solver)
     PetscCall(solver->method->step(solver, &outcome));
     if (outcome == EQM_STEP_CONVERGED) {
       solver->status = EQM_STATUS_CONVERGED;
-      PetscCall(PetscStrncpy(solver->message, "the next step would change the objective by rounding only", sizeof(solver->message)));
+      PetscCall(PetscStrncpy(solver->message, "the next step would change the objective by rounding only",
+                             sizeof(solver->message)));
       break;
     }
     if (outcome == EQM_STEP_STALLED) {
@@ -184,17 +171,16 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
   PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   PetscCall(Iterate(solver));
   PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
-  if (solver->domain->curved_image && solver->totals.folds > 0) {
-    PetscCall(EqmSphereUnfold(solver, &solver->unfolded_from, &solver->unfolded_to));
+  if (solver->problem->unfold && solver->totals.folds > 0) {
+    PetscCall(solver->problem->unfold(solver, &solver->unfolded_from, &solver->unfolded_to));
     PetscCall(EqmSolverLook(solver));
     PetscCall(EqmMonitorUnfolded(solver, "at the end"));
   }
   if (solver->totals.folds > 0) {
     solver->status = EQM_STATUS_FOLDS;
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
-                            "%" PetscInt64_FMT
-                            " triangles of the map are folded over; try the default method, or -start guarded",
-                            solver->totals.folds));
+                            "%" PetscInt64_FMT " %s of the map are folded over; try the default method and its start",
+                            solver->totals.folds, solver->mesh->cell_size == 4 ? "tetrahedra" : "triangles"));
   }
   PetscCall(EqmMonitorEnd(solver));
   PetscFunctionReturn(0);
@@ -213,7 +199,7 @@ static PetscErrorCode TakeHistory(EqmSolver solver, EqmMap map)
   PetscCall(PetscMalloc1(solver->num_history, &map->history));
   PetscCall(PetscArraycpy(map->history, solver->history, solver->num_history));
   map->energy_initial = solver->history[0].energy;
-  map->energy_final = map->distortion.energy;
+  map->energy_final = solver->totals.energy;
   map->status = solver->status;
   map->num_boundary_vertices = solver->mesh->num_boundary_vertices;
   map->ranks = solver->mesh->size;

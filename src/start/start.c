@@ -5,7 +5,7 @@
 typedef struct StartRow StartRow;
 struct StartRow {
   const char *name, *purpose;
-  PetscBool sphere; /* for closed surfaces; else for the plane */
+  EqmStartFamily family;
   PetscErrorCode (*run)(EqmSolver, const StartRow *, PetscInt steps);
   EqmLaplacianKind laplacian;
   PetscBool
@@ -18,66 +18,57 @@ static PetscErrorCode StartOnSphere(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartDescending(EqmSolver, const StartRow *, PetscInt);
 
 static const StartRow starts[] = {
-    {"harmonic", "boundary by arc length, interior by cotangent weights", PETSC_FALSE, StartInPlane,
+    {"harmonic", "boundary by arc length, interior by cotangent weights", EQM_STARTS_PLANE, StartInPlane,
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
-    {"fixed-point", "harmonic, then fixed-point steps with the boundary held (000 Algorithm 1, lines 4-7)", PETSC_FALSE,
-     StartInPlane, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 4},
-    {"tutte", "boundary by arc length, interior by equal weights: never folds", PETSC_FALSE, StartInPlane,
+    {"fixed-point", "harmonic, then fixed-point steps with the boundary held (000 Algorithm 1, lines 4-7)",
+     EQM_STARTS_PLANE, StartInPlane, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 4},
+    {"tutte", "boundary by arc length, interior by equal weights: never folds", EQM_STARTS_PLANE, StartInPlane,
      EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 0},
-    {"guarded", "tutte, then fixed-point steps that stop short of the first fold", PETSC_FALSE, StartInPlane,
+    {"guarded", "tutte, then fixed-point steps that stop short of the first fold", EQM_STARTS_PLANE, StartInPlane,
      EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 5},
-    {"linear", "Laplacian linearisation: one triangle pinned, the rest conformal", PETSC_TRUE, StartOnSphere,
+    {"linear", "Laplacian linearisation: one triangle pinned, the rest conformal", EQM_STARTS_SPHERE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
-    {"fixed-point", "linear, then fixed-point steps (001 Algorithm 2)", PETSC_TRUE, StartOnSphere,
+    {"fixed-point", "linear, then fixed-point steps (001 Algorithm 2)", EQM_STARTS_SPHERE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 10},
     {"descending", "linear, then fixed-point steps for as long as the energy falls, seven at most (001 section 6.3)",
-     PETSC_TRUE, StartDescending, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 7},
-    {"guarded", "linear, with fixed-point steps and unfolding where it folds", PETSC_TRUE, StartOnSphere,
+     EQM_STARTS_SPHERE, StartDescending, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 7},
+    {"guarded", "linear, with fixed-point steps and unfolding where it folds", EQM_STARTS_SPHERE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 15},
 };
 enum { NUM_STARTS = sizeof(starts) / sizeof(starts[0]) };
 
-static PetscErrorCode FindRow(const char *target, const char *name, const StartRow **row)
+static PetscErrorCode FindRow(const EqmProblem *problem, const char *name, const StartRow **row)
 {
-  PetscBool sphere;
+  char names[EQM_MESSAGE_MAX];
 
   PetscFunctionBegin;
-  PetscCall(PetscStrcmp(target, "sphere", &sphere));
-  *row = NULL;
   for (int k = 0; k < NUM_STARTS; k++) {
     PetscBool same;
     PetscCall(PetscStrcmp(name, starts[k].name, &same));
-    if (same && starts[k].sphere == sphere) *row = &starts[k];
+    if (!same || starts[k].family != problem->starts) continue;
+    *row = &starts[k];
+    PetscFunctionReturn(0);
   }
-  if (!*row) {
-    char names[EQM_MESSAGE_MAX];
-    PetscCall(EqmStartNames(target, names, sizeof(names)));
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-start %s: there is no such start for the %s; choose one of %s", name,
-            target, names);
-  }
-  PetscFunctionReturn(0);
+  PetscCall(EqmStartNames(problem->starts, names, sizeof(names)));
+  EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-start %s: there is no such start for the %s; choose one of %s", name,
+          problem->place, names);
 }
 
-/* Fail with EQM_ERR_USAGE if there is no start of this name for the target. Collective. */
-PetscErrorCode EqmStartFind(const char *target, const char *name)
+PetscErrorCode EqmStartFind(const EqmProblem *problem, const char *name)
 {
   const StartRow *row;
 
   PetscFunctionBegin;
-  PetscCall(FindRow(target, name, &row));
+  PetscCall(FindRow(problem, name, &row));
   PetscFunctionReturn(0);
 }
 
-/* The names of all starts for a target, separated by commas. Not collective. */
-PetscErrorCode EqmStartNames(const char *target, char *text, size_t length)
+PetscErrorCode EqmStartNames(EqmStartFamily family, char *text, size_t length)
 {
-  PetscBool sphere;
-
   PetscFunctionBegin;
-  PetscCall(PetscStrcmp(target, "sphere", &sphere));
   text[0] = '\0';
   for (int k = 0; k < NUM_STARTS; k++) {
-    if (starts[k].sphere != sphere) continue;
+    if (starts[k].family != family) continue;
     PetscCall(PetscStrlcat(text, text[0] ? ", " : "", length));
     PetscCall(PetscStrlcat(text, starts[k].name, length));
   }
@@ -232,7 +223,7 @@ PetscErrorCode EqmStart(EqmSolver solver)
   const StartRow *row;
 
   PetscFunctionBegin;
-  PetscCall(FindRow(solver->target, solver->settings.start, &row));
+  PetscCall(FindRow(solver->problem, solver->settings.start, &row));
   PetscCall(row->run(solver, row, solver->settings.start_steps >= 0 ? solver->settings.start_steps : row->steps));
   PetscCall(EqmPlaceMakeFrames(solver->domain, &solver->place));
   PetscFunctionReturn(0);

@@ -1,0 +1,214 @@
+/* The table of problems: energy x domain, and the methods that solve them. */
+#include "method/method.h"
+#include <string.h>
+
+/* ---- domains */
+static PetscErrorCode CreateDisk(EqmSolver solver, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmDomainCreateDisk(solver->mesh, domain));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateSquare(EqmSolver solver, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCall(
+      EqmDomainCreateSquare(solver->mesh, solver->settings.has_corners ? solver->settings.corners : NULL, domain));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateSphere(EqmSolver solver, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmDomainCreateSphere(solver->mesh, domain));
+  PetscFunctionReturn(0);
+}
+
+/* ---- options of one problem only */
+static PetscErrorCode AskCorners(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  EqmSettings *const set = &solver->settings;
+  PetscInt num_corners = 4;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsIntArray("-corners",
+                                 "four boundary vertices (input numbers from 0) for (0,0), (1,0), (1,1), (0,1)",
+                                 "EqmSolverSetFromOptions", set->corners, &num_corners, &set->has_corners));
+  if (set->has_corners && num_corners != 4)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-corners: give four vertex numbers, i,j,k,l; there are %" PetscInt_FMT,
+            num_corners);
+  PetscFunctionReturn(0);
+}
+
+/* ---- energies */
+PetscErrorCode EqmSumMeasures(EqmSolver solver)
+{
+  PetscReal *scratch;
+
+  PetscFunctionBegin;
+  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
+  if (!solver->domain->curved_image) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &scratch));
+  PetscCall(EqmImageFolds(solver->domain, &solver->place, scratch, &solver->totals.folds));
+  PetscCall(PetscFree(scratch));
+  PetscFunctionReturn(0);
+}
+
+/* ---- methods: name, first map, -max_it, -energy_rtol, -ratio_tol */
+static const EqmOffer in_plane[] = {
+    {&EqmMethodLm, "guarded", 60, .05, 1e-4},      {&EqmMethodFixedPoint, "harmonic", 100, 1e-4, 0.},
+    {&EqmMethodNcg, "fixed-point", 100, 1e-4, 0.}, {&EqmMethodLbfgs, "guarded", 200, 1e-3, 0.},
+    {&EqmMethodRgd, "guarded", 100, 1e-6, 0.},
+};
+
+static const EqmOffer on_sphere[] = {
+    {&EqmMethodLm, "guarded", 60, .05, 1e-4},     {&EqmMethodFixedPoint, "linear", 100, 1e-4, 0.},
+    {&EqmMethodNcg, "guarded", 100, 1e-4, 0.},    {&EqmMethodLbfgs, "guarded", 200, 1e-3, 0.},
+    {&EqmMethodRgd, "descending", 100, 1e-6, 0.},
+};
+
+#define OFFERS(list) .offers = (list), .num_offers = sizeof(list) / sizeof((list)[0])
+
+/* Ratios off by half, root mean square: that is no map of equal areas. */
+static const PetscReal off_by_half = .25;
+
+static const EqmProblem problems[] = {
+    {.target = "disk",
+     .place = "disk",
+     .create_domain = CreateDisk,
+     .sum = EqmSumMeasures,
+     .starts = EQM_STARTS_PLANE,
+     .poor_energy = off_by_half,
+     .takes_balance = PETSC_TRUE,
+     OFFERS(in_plane)},
+    {.target = "square",
+     .place = "square",
+     .options = AskCorners,
+     .create_domain = CreateSquare,
+     .sum = EqmSumMeasures,
+     .starts = EQM_STARTS_PLANE,
+     .poor_energy = off_by_half,
+     .takes_balance = PETSC_TRUE,
+     OFFERS(in_plane)},
+    {.target = "sphere",
+     .place = "sphere",
+     .create_domain = CreateSphere,
+     .sum = EqmSumMeasures,
+     .unfold = EqmSphereUnfold,
+     .starts = EQM_STARTS_SPHERE,
+     .poor_energy = off_by_half,
+     OFFERS(on_sphere)},
+};
+enum { NUM_PROBLEMS = sizeof(problems) / sizeof(problems[0]) };
+
+PetscErrorCode EqmProblemFind(MPI_Comm comm, const char *target, EqmMesh mesh, const EqmProblem **problem)
+{
+  PetscFunctionBegin;
+  *problem = NULL;
+  for (PetscInt k = 0; k < NUM_PROBLEMS && !*problem; k++) {
+    PetscBool takes = PETSC_TRUE;
+    if (strcmp(problems[k].target, target)) continue;
+    if (mesh && problems[k].takes) PetscCall(problems[k].takes(mesh, &takes));
+    if (takes) *problem = &problems[k];
+  }
+  if (!*problem) EqmFail(comm, EQM_ERR_USAGE, "there is no map of this mesh to the target '%s'", target);
+  PetscFunctionReturn(0);
+}
+
+PetscBool EqmProblemIsSettled(const char *target)
+{
+  PetscInt rows = 0;
+
+  for (PetscInt k = 0; k < NUM_PROBLEMS; k++) rows += !strcmp(problems[k].target, target);
+  return (PetscBool)(rows == 1);
+}
+
+PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, const char *method, const EqmOffer **offer)
+{
+  char names[EQM_MESSAGE_MAX];
+
+  PetscFunctionBegin;
+  *offer = strcmp(method, "auto") ? NULL : &problem->offers[0];
+  for (PetscInt k = 0; k < problem->num_offers && !*offer; k++) {
+    if (!strcmp(problem->offers[k].method->name, method)) *offer = &problem->offers[k];
+  }
+  if (*offer) PetscFunctionReturn(0);
+  PetscCall(EqmProblemMethodNames(problem->target, names, sizeof(names)));
+  EqmFail(comm, EQM_ERR_USAGE, "-method %s: there is no such method for the %s; choose one of %s", method,
+          problem->place, names);
+}
+
+/* Call `visit` for every method that the target's rows offer, once each. */
+static PetscErrorCode ForEachMethod(const char *target, PetscErrorCode (*visit)(const EqmMethod *, void *),
+                                    void *context)
+{
+  const EqmMethod *seen[32];
+  PetscInt num_seen = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < NUM_PROBLEMS; k++) {
+    if (strcmp(problems[k].target, target)) continue;
+    for (PetscInt o = 0; o < problems[k].num_offers; o++) {
+      const EqmMethod *const method = problems[k].offers[o].method;
+      PetscInt s = 0;
+      while (s < num_seen && seen[s] != method) s++;
+      if (s < num_seen) continue;
+      seen[num_seen++] = method;
+      PetscCall(visit(method, context));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  char *text;
+  size_t length;
+} NameList;
+
+static PetscErrorCode AppendName(const EqmMethod *method, void *context)
+{
+  NameList *const list = context;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrlcat(list->text, ", ", list->length));
+  PetscCall(PetscStrlcat(list->text, method->name, list->length));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmProblemMethodNames(const char *target, char *text, size_t length)
+{
+  NameList list = {text, length};
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(text, "auto", length));
+  PetscCall(ForEachMethod(target, AppendName, &list));
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  EqmSolver solver;
+  PetscOptionItems *items;
+} Asking;
+
+static PetscErrorCode AskMethod(const EqmMethod *method, void *context)
+{
+  const Asking *const asking = context;
+
+  PetscFunctionBegin;
+  if (method->options) PetscCall(method->options(asking->solver, asking->items));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmProblemAskOptions(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  Asking asking = {solver, PetscOptionsObject};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < NUM_PROBLEMS; k++) {
+    if (strcmp(problems[k].target, solver->target) || !problems[k].options) continue;
+    PetscCall(problems[k].options(solver, PetscOptionsObject));
+  }
+  PetscCall(ForEachMethod(solver->target, AskMethod, &asking));
+  PetscFunctionReturn(0);
+}
