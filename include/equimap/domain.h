@@ -1,4 +1,4 @@
-/* Where vertices may go: free in the plane, on the unit circle, along a side, fixed.
+/* Where vertices may go: free in the plane or in space, on the unit circle or sphere, along a side, fixed.
 
    Each vertex lives on a manifold of its own. Its degrees of freedom are coordinates in an orthonormal frame of the
    tangent space at its present place; a step follows the geodesic of that velocity and carries the frame along by
@@ -21,15 +21,17 @@ typedef enum {
 
 /* What is measured of an image simplex. */
 typedef enum {
-  EQM_MEASURE_AREA2,   /* signed area in the plane */
-  EQM_MEASURE_AREA3,   /* area of a flat triangle in space */
-  EQM_MEASURE_HALF_DET /* half of det(p, q, r): the sign of a triangle on the sphere, and nearly its area */
+  EQM_MEASURE_AREA2,    /* signed area in the plane */
+  EQM_MEASURE_AREA3,    /* area of a flat triangle in space */
+  EQM_MEASURE_HALF_DET, /* half of det(p, q, r): the sign of a triangle on the sphere, and nearly its area */
+  EQM_MEASURE_VOLUME    /* signed volume of a tetrahedron */
 } EqmMeasureKind;
 
 /* A configuration: the place of every local vertex, ghosts included and up to date. */
 typedef struct {
   PetscReal *x;     /* dim * num_local */
-  PetscReal *frame; /* sphere: 3 * num_local, the first tangent vector, the second is place x first; else NULL */
+  PetscReal *frame; /* of vertices on the sphere, 3 * num_local: the first tangent vector, the second is place x first;
+                       else NULL */
 } EqmPlace;
 
 typedef struct _p_EqmDomain *EqmDomain;
@@ -61,6 +63,9 @@ PETSC_EXTERN PetscErrorCode EqmDomainCreateDisk(EqmMesh mesh, EqmDomain *domain)
 PETSC_EXTERN PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], EqmDomain *domain);
 /* The unit sphere: every vertex on it (001 (2.1)). The mesh must be closed, of genus 0. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateSphere(EqmMesh mesh, EqmDomain *domain);
+/* The unit ball: boundary vertices on the sphere, the others free in space (003 section 3). The mesh must be a solid.
+   Collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainCreateBall(EqmMesh mesh, EqmDomain *domain);
 PETSC_EXTERN PetscErrorCode EqmDomainDestroy(EqmDomain *domain);
 
 PETSC_EXTERN PetscErrorCode EqmPlaceCreate(EqmDomain domain, EqmPlace *place);
@@ -83,7 +88,8 @@ PETSC_EXTERN PetscErrorCode EqmDomainExpand(EqmDomain domain, const EqmPlace *pl
 /* Second derivative of the geodesics with the given ambient velocities: zero but on curved parts. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCurvature(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity,
                                                PetscReal *acceleration);
-/* Are the boundary vertices in their order along the boundary, strictly, and winding once? Collective. */
+/* Are the boundary vertices in their order along the boundary, strictly, and winding once? Always where the boundary is
+   no curve. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place, PetscBool *in_order);
 /* The frame of local vertex v at `place`: column k of the dim x count matrix is frame[dim k .. dim k + dim - 1]. */
 PETSC_EXTERN PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, PetscReal frame[9]);

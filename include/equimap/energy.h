@@ -48,12 +48,25 @@ PETSC_EXTERN PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *plac
 PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy,
                                               Vec gradient);
 
-/* Weights of a Laplacian: per local cell and corner, that of the edge opposite the corner. */
+/* Weights of a Laplacian: per local cell and edge. Edge a of a triangle is opposite its corner a; the edges of a
+   tetrahedron join its corners 01, 02, 03, 12, 13, 23. */
 typedef enum {
-  EQM_LAPLACIAN_UNIFORM,   /* 1/2: every inner edge one */
-  EQM_LAPLACIAN_COTANGENT, /* half the cotangents of the mesh: Dirichlet energy (000 L_S(id)) */
-  EQM_LAPLACIAN_STRETCH    /* L_S of the present image (000 (2d)) */
+  EQM_LAPLACIAN_UNIFORM,   /* 1/2: every inner edge of a surface one */
+  EQM_LAPLACIAN_COTANGENT, /* of the mesh: Dirichlet energy (000 L_S(id)) */
+  EQM_LAPLACIAN_STRETCH    /* of the present image: L_S (000 (2d)), of solids L_V (003 (3), corrected) */
 } EqmLaplacianKind;
+/* How many edges a cell has, and which corners edge e joins. Not collective. */
+static inline PetscInt EqmCellEdges(PetscInt cell_size)
+{
+  return cell_size == 4 ? 6 : 3;
+}
+static inline void EqmCellEdge(PetscInt cell_size, PetscInt e, PetscInt *from, PetscInt *to)
+{
+  static const unsigned char ends[2][6][2] = {{{1, 2}, {2, 0}, {0, 1}},
+                                              {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+  *from = ends[cell_size == 4][e][0];
+  *to = ends[cell_size == 4][e][1];
+}
 PETSC_EXTERN PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place,
                                                 PetscReal *weights);
 /* y = L x for `width` components; x per local vertex, y per owned vertex. Not collective. */

@@ -36,8 +36,12 @@ PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, Pet
 /* Number the degrees of freedom once `kind` is known: each rank's in the order of its vertices. Collective. */
 PetscErrorCode EqmDomainNumber(EqmDomain domain)
 {
-  static const unsigned char dof_count[] = {[EQM_VERTEX_FREE] = 2,   [EQM_VERTEX_CIRCLE] = 1, [EQM_VERTEX_SIDE_X] = 1,
-                                            [EQM_VERTEX_SIDE_Y] = 1, [EQM_VERTEX_SPHERE] = 2, [EQM_VERTEX_FIXED] = 0};
+  const unsigned char dof_count[] = {[EQM_VERTEX_FREE] = (unsigned char)domain->dim,
+                                     [EQM_VERTEX_CIRCLE] = 1,
+                                     [EQM_VERTEX_SIDE_X] = 1,
+                                     [EQM_VERTEX_SIDE_Y] = 1,
+                                     [EQM_VERTEX_SPHERE] = 2,
+                                     [EQM_VERTEX_FIXED] = 0};
   const EqmMesh mesh = domain->mesh;
   PetscInt count = 0;
 
@@ -97,7 +101,8 @@ PetscErrorCode EqmPlaceCreate(EqmDomain domain, EqmPlace *place)
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(domain->dim * domain->mesh->num_local, &place->x));
   place->frame = NULL;
-  if (domain->curved_image) PetscCall(PetscCalloc1(3 * domain->mesh->num_local, &place->frame));
+  if (domain->kind_of_boundary == EQM_VERTEX_SPHERE)
+    PetscCall(PetscCalloc1(3 * domain->mesh->num_local, &place->frame));
   PetscFunctionReturn(0);
 }
 
@@ -200,6 +205,7 @@ PetscErrorCode EqmPlaceMakeFrames(EqmDomain domain, EqmPlace *place)
     const PetscReal *const x = place->x + 3 * v;
     PetscReal axis[3] = {0., 0., 0.}, b[3], length;
     PetscInt smallest = 0;
+    if (domain->kind[v] != EQM_VERTEX_SPHERE) continue;
     for (PetscInt k = 1; k < 3; k++) smallest = PetscAbsReal(x[k]) < PetscAbsReal(x[smallest]) ? k : smallest;
     axis[smallest] = 1.; /* the axis farthest from x */
     EqmCross(x, axis, b);
@@ -281,7 +287,7 @@ PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place,
 
   PetscFunctionBegin;
   *in_order = PETSC_TRUE;
-  if (mesh->num_boundary_vertices == 0) PetscFunctionReturn(0);
+  if (!domain->arc_length) PetscFunctionReturn(0);
   for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
     const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
     if (i >= mesh->num_owned) continue;

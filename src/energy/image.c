@@ -11,18 +11,29 @@
       loop(EQM_MEASURE_AREA2, __VA_ARGS__);                                                                            \
     else if ((kind) == EQM_MEASURE_AREA3)                                                                              \
       loop(EQM_MEASURE_AREA3, __VA_ARGS__);                                                                            \
+    else if ((kind) == EQM_MEASURE_VOLUME)                                                                             \
+      loop(EQM_MEASURE_VOLUME, __VA_ARGS__);                                                                           \
     else                                                                                                               \
       loop(EQM_MEASURE_HALF_DET, __VA_ARGS__);                                                                         \
   } while (0)
 
+/* Where the corners of a cell are, in an array with `dim` reals per vertex. */
+static inline void Corners(PetscInt num_corners, PetscInt dim, const PetscInt *vertex, const PetscReal *x,
+                           const PetscReal *p[EQM_MOST_CORNERS])
+{
+  for (PetscInt a = 0; a < num_corners; a++) p[a] = x + dim * vertex[a];
+}
+
 static inline __attribute__((always_inline)) void MeasureRange(EqmMeasureKind kind, EqmMesh mesh, PetscInt b,
                                                                const PetscReal *x, PetscReal *a)
 {
-  const PetscInt dim = EqmMeasureDim(kind), *const cells = mesh->cells;
+  const PetscInt dim = EqmMeasureDim(kind), num_corners = EqmMeasureCorners(kind);
   const PetscInt last = EqmRangeStart(mesh->num_local_cells, b + 1);
 
   for (PetscInt c = EqmRangeStart(mesh->num_local_cells, b); c < last; c++) {
-    a[c] = EqmMeasureValue(kind, x + dim * cells[3 * c], x + dim * cells[3 * c + 1], x + dim * cells[3 * c + 2]);
+    const PetscReal *p[EQM_MOST_CORNERS];
+    Corners(num_corners, dim, mesh->cells + num_corners * c, x, p);
+    a[c] = EqmMeasureValue(kind, p);
   }
 }
 
@@ -157,15 +168,17 @@ PetscErrorCode EqmImageSum(EqmMesh mesh, const PetscReal *a, EqmImageTotals *tot
 static inline __attribute__((always_inline)) void GradientBlock(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
                                                                 const PetscReal *slope, PetscInt b, PetscReal *gradient)
 {
-  const PetscInt dim = EqmMeasureDim(kind), first = mesh->block_vertex[b];
+  const PetscInt dim = EqmMeasureDim(kind), num_corners = EqmMeasureCorners(kind), first = mesh->block_vertex[b];
   const size_t length = (size_t)(mesh->block_vertex[b + 1] - first);
 
   for (size_t k = 0; k < (size_t)dim * length; k++) gradient[(size_t)(dim * first) + k] = 0.;
   for (PetscInt q = mesh->block_start[b]; q < mesh->block_start[b + 1]; q++) {
-    const PetscInt c = mesh->block_cell[q], *const v = mesh->cells + 3 * c;
-    PetscReal g[9];
-    EqmMeasureGradient(kind, x + dim * v[0], x + dim * v[1], x + dim * v[2], g);
-    for (PetscInt corner = 0; corner < 3; corner++) {
+    const PetscInt c = mesh->block_cell[q], *const v = mesh->cells + num_corners * c;
+    const PetscReal *p[EQM_MOST_CORNERS];
+    PetscReal g[12];
+    Corners(num_corners, dim, v, x, p);
+    EqmMeasureGradient(kind, p, g);
+    for (PetscInt corner = 0; corner < num_corners; corner++) {
       if ((size_t)(v[corner] - first) >= length) continue;
       for (PetscInt k = 0; k < dim; k++) gradient[dim * v[corner] + k] += slope[c] * g[dim * corner + k];
     }
@@ -224,20 +237,23 @@ static inline __attribute__((always_inline)) void DerivativesRange(EqmMeasureKin
                                                                    const PetscReal *acceleration, PetscReal *first,
                                                                    PetscReal *second)
 {
-  const PetscInt dim = EqmMeasureDim(kind), last = EqmRangeStart(mesh->num_local_cells, b + 1);
+  const PetscInt dim = EqmMeasureDim(kind), num_corners = EqmMeasureCorners(kind);
+  const PetscInt last = EqmRangeStart(mesh->num_local_cells, b + 1);
 
   for (PetscInt c = EqmRangeStart(mesh->num_local_cells, b); c < last; c++) {
-    const PetscInt *const v = mesh->cells + 3 * c;
-    const PetscReal *const p = x + dim * v[0], *const q = x + dim * v[1], *const r = x + dim * v[2];
-    PetscReal g[9], rate = 0., bend;
-    EqmMeasureGradient(kind, p, q, r, g);
-    for (PetscInt a = 0; a < 3; a++) {
+    const PetscInt *const v = mesh->cells + num_corners * c;
+    const PetscReal *p[EQM_MOST_CORNERS], *d[EQM_MOST_CORNERS];
+    PetscReal g[12], rate = 0., bend;
+    Corners(num_corners, dim, v, x, p);
+    Corners(num_corners, dim, v, velocity, d);
+    EqmMeasureGradient(kind, p, g);
+    for (PetscInt a = 0; a < num_corners; a++) {
       for (PetscInt k = 0; k < dim; k++) rate += g[dim * a + k] * velocity[dim * v[a] + k];
     }
     if (first) first[c] = rate;
     if (!second) continue;
-    bend = EqmMeasureBend(kind, p, q, r, velocity + dim * v[0], velocity + dim * v[1], velocity + dim * v[2]);
-    for (PetscInt a = 0; a < 3 && acceleration; a++) {
+    bend = EqmMeasureBend(kind, p, d);
+    for (PetscInt a = 0; a < num_corners && acceleration; a++) {
       for (PetscInt k = 0; k < dim; k++) bend += g[dim * a + k] * acceleration[dim * v[a] + k];
     }
     second[c] = bend;

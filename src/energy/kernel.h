@@ -65,59 +65,110 @@ static inline PetscReal EqmHalfDet(const PetscReal *p, const PetscReal *q, const
 }
 
 /* ---- one interface to the measures: value, gradient by corner and coordinate, second derivative along straight
-   motions. `kind` is a constant wherever these are called, so that each loop is compiled for its measure. */
+   motions; `p` are the corners' places, `d` their velocities. `kind` is a constant wherever these are called, so that
+   each loop is compiled for its measure. */
+enum { EQM_MOST_CORNERS = 4 };
 
 static inline PetscInt EqmMeasureDim(EqmMeasureKind kind)
 {
   return kind == EQM_MEASURE_AREA2 ? 2 : 3;
 }
 
-static inline PetscReal EqmMeasureValue(EqmMeasureKind kind, const PetscReal *p, const PetscReal *q, const PetscReal *r)
+static inline PetscInt EqmMeasureCorners(EqmMeasureKind kind)
 {
-  if (kind == EQM_MEASURE_AREA2) return EqmArea2(p, q, r);
-  return kind == EQM_MEASURE_AREA3 ? EqmArea3(p, q, r) : EqmHalfDet(p, q, r);
+  return kind == EQM_MEASURE_VOLUME ? 4 : 3;
+}
+
+static inline PetscReal EqmMeasureValue(EqmMeasureKind kind, const PetscReal *const p[])
+{
+  if (kind == EQM_MEASURE_AREA2) return EqmArea2(p[0], p[1], p[2]);
+  if (kind == EQM_MEASURE_VOLUME) return EqmVolume(p[0], p[1], p[2], p[3]);
+  return kind == EQM_MEASURE_AREA3 ? EqmArea3(p[0], p[1], p[2]) : EqmHalfDet(p[0], p[1], p[2]);
+}
+
+/* The edges of a tetrahedron from its first corner. */
+static inline void EqmEdgesFromFirst(const PetscReal *const p[], PetscReal e[3][3])
+{
+  for (PetscInt a = 0; a < 3; a++) {
+    for (PetscInt k = 0; k < 3; k++) e[a][k] = p[a + 1][k] - p[0][k];
+  }
+}
+
+/* The volume's gradient at a corner is a third of the opposite face's area along its normal (003 section 3). */
+static inline void EqmVolumeGradient(const PetscReal *const p[], PetscReal *g)
+{
+  PetscReal e[3][3];
+
+  EqmEdgesFromFirst(p, e);
+  for (PetscInt a = 0; a < 3; a++) {
+    EqmCross(e[(a + 1) % 3], e[(a + 2) % 3], g + 3 * (a + 1));
+    for (PetscInt k = 0; k < 3; k++) g[3 * (a + 1) + k] *= 1. / 6.;
+  }
+  for (PetscInt k = 0; k < 3; k++) g[k] = -(g[3 + k] + g[6 + k] + g[9 + k]);
 }
 
 /* The flat area's gradient at a corner is half the opposite edge turned in the triangle's plane (001 Appendix A,
    corrected); the determinant's is half the cross product of the other two. */
-static inline void EqmMeasureGradient(EqmMeasureKind kind, const PetscReal *p, const PetscReal *q, const PetscReal *r,
-                                      PetscReal g[9])
+static inline void EqmMeasureGradient(EqmMeasureKind kind, const PetscReal *const p[], PetscReal *g)
 {
-  const PetscReal *const corner[5] = {p, q, r, p, q};
-
   if (kind == EQM_MEASURE_AREA2) {
-    EqmArea2Gradient(p, q, r, g);
+    EqmArea2Gradient(p[0], p[1], p[2], g);
+    return;
+  }
+  if (kind == EQM_MEASURE_VOLUME) {
+    EqmVolumeGradient(p, g);
     return;
   }
   if (kind == EQM_MEASURE_HALF_DET) {
-    for (PetscInt a = 0; a < 3; a++) EqmCross(corner[a + 1], corner[a + 2], g + 3 * a);
+    for (PetscInt a = 0; a < 3; a++) EqmCross(p[(a + 1) % 3], p[(a + 2) % 3], g + 3 * a);
     for (PetscInt k = 0; k < 9; k++) g[k] *= .5;
     return;
   }
-  const PetscReal u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+  const PetscReal u[3] = {p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2]};
+  const PetscReal v[3] = {p[2][0] - p[0][0], p[2][1] - p[0][1], p[2][2] - p[0][2]};
   PetscReal n[3], scale;
   EqmCross(u, v, n);
   scale = .5 / PetscSqrtReal(EqmDot3(n, n));
   for (PetscInt k = 0; k < 3; k++) n[k] *= scale;
   for (PetscInt a = 0; a < 3; a++) {
-    const PetscReal *const s = corner[a + 1], *const t = corner[a + 2], e[3] = {t[0] - s[0], t[1] - s[1], t[2] - s[2]};
+    const PetscReal *const s = p[(a + 1) % 3], *const t = p[(a + 2) % 3];
+    const PetscReal e[3] = {t[0] - s[0], t[1] - s[1], t[2] - s[2]};
     EqmCross(n, e, g + 3 * a);
   }
 }
 
-/* d2/dt2 of the measure of p + t dp, q + t dq, r + t dr at t = 0. */
-static inline PetscReal EqmMeasureBend(EqmMeasureKind kind, const PetscReal *p, const PetscReal *q, const PetscReal *r,
-                                       const PetscReal *dp, const PetscReal *dq, const PetscReal *dr)
+static inline PetscReal EqmDet3(const PetscReal u[3], const PetscReal v[3], const PetscReal w[3])
 {
-  if (kind == EQM_MEASURE_AREA2) return 2. * EqmArea2(dp, dq, dr); /* the area is quadratic */
-  if (kind == EQM_MEASURE_HALF_DET) return 2. * (EqmHalfDet(dp, dq, r) + EqmHalfDet(dp, q, dr) + EqmHalfDet(p, dq, dr));
+  PetscReal n[3];
+
+  EqmCross(u, v, n);
+  return EqmDot3(n, w);
+}
+
+/* The volume is a third of a cubic form of the edges: its second derivative has one term per pair of moving edges. */
+static inline PetscReal EqmVolumeBend(const PetscReal *const p[], const PetscReal *const d[])
+{
+  PetscReal e[3][3], f[3][3];
+
+  EqmEdgesFromFirst(p, e);
+  EqmEdgesFromFirst(d, f);
+  return (EqmDet3(f[0], f[1], e[2]) + EqmDet3(f[0], e[1], f[2]) + EqmDet3(e[0], f[1], f[2])) / 3.;
+}
+
+/* d2/dt2 of the measure of p + t d at t = 0. */
+static inline PetscReal EqmMeasureBend(EqmMeasureKind kind, const PetscReal *const p[], const PetscReal *const d[])
+{
+  if (kind == EQM_MEASURE_AREA2) return 2. * EqmArea2(d[0], d[1], d[2]); /* the area is quadratic */
+  if (kind == EQM_MEASURE_VOLUME) return EqmVolumeBend(p, d);
+  if (kind == EQM_MEASURE_HALF_DET)
+    return 2. * (EqmHalfDet(d[0], d[1], p[2]) + EqmHalfDet(d[0], p[1], d[2]) + EqmHalfDet(p[0], d[1], d[2]));
   /* a = |N|/2, N = N0 + t N1 + t^2 N2 */
   PetscReal u[3], v[3], du[3], dv[3], n[3], n1[3], n2[3], part[3];
   for (PetscInt k = 0; k < 3; k++) {
-    u[k] = q[k] - p[k];
-    v[k] = r[k] - p[k];
-    du[k] = dq[k] - dp[k];
-    dv[k] = dr[k] - dp[k];
+    u[k] = p[1][k] - p[0][k];
+    v[k] = p[2][k] - p[0][k];
+    du[k] = d[1][k] - d[0][k];
+    dv[k] = d[2][k] - d[0][k];
   }
   EqmCross(u, v, n);
   EqmCross(du, v, n1);

@@ -9,7 +9,7 @@
    cells around a vertex, of these cells' norms. H less a shift below that bound is definite; its inverse, a factor and
    two extra columns (Woodbury), turns H's smallest eigenvalues into the largest, which Lanczos finds at once. */
 #include "method/method.h"
-#include "energy/kernel.h"
+#include "energy/curvature.h"
 #ifdef EQM_HAVE_SLEPC
 #include <slepceps.h>
 
@@ -23,68 +23,18 @@ typedef struct {
   PetscReal capacitance[2][2]; /* (C^-1 + U^T solved)^-1 */
 } Hessian;
 
-/* The displacements that a cell's degrees of freedom stand for: nine (six) ambient numbers each; returns how many. */
-static PetscInt CellDirections(EqmSolver solver, PetscInt cell, PetscInt corner[6], PetscReal direction[6][9])
-{
-  const EqmDomain domain = solver->domain;
-  PetscInt n = 0;
-
-  for (PetscInt a = 0; a < 3; a++) {
-    PetscReal frame[9];
-    const PetscInt count = EqmDomainFrame(domain, &solver->place, solver->mesh->cells[3 * cell + a], frame);
-    for (PetscInt k = 0; k < count; k++, n++) {
-      corner[n] = a;
-      for (PetscInt c = 0; c < 9; c++) direction[n][c] = 0.;
-      for (PetscInt c = 0; c < domain->dim; c++) direction[n][domain->dim * a + c] = frame[domain->dim * k + c];
-    }
-  }
-  return n;
-}
-
-/* First derivatives of the cell's measure, and second ones along geodesics; returns the number of degrees of freedom.
- */
-static PetscInt CellDerivatives(EqmSolver solver, PetscInt cell, PetscInt corner[6], PetscReal first[6],
-                                PetscReal second[6][6])
-{
-  const EqmDomain domain = solver->domain;
-  const PetscInt dim = domain->dim, *const v = solver->mesh->cells + 3 * cell;
-  const PetscReal *const x[3] = {solver->place.x + dim * v[0], solver->place.x + dim * v[1],
-                                 solver->place.x + dim * v[2]};
-  PetscReal direction[6][9], sum[9], gradient[9];
-  const PetscInt n = CellDirections(solver, cell, corner, direction);
-
-  EqmMeasureGradient(domain->measure, x[0], x[1], x[2], gradient);
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal *const d = direction[i];
-    first[i] = 0.;
-    for (PetscInt k = 0; k < 3 * dim; k++) first[i] += gradient[k] * d[k];
-    second[i][i] = EqmMeasureBend(domain->measure, x[0], x[1], x[2], d, d + dim, d + 2 * dim);
-    for (PetscInt j = 0; j < i; j++) { /* by polarisation */
-      for (PetscInt k = 0; k < 3 * dim; k++) sum[k] = d[k] + direction[j][k];
-      const PetscReal both = EqmMeasureBend(domain->measure, x[0], x[1], x[2], sum, sum + dim, sum + 2 * dim);
-      second[i][j] = second[j][i] = .5 * (both - second[i][i] - second[j][j]);
-    }
-  }
-  for (PetscInt i = 0; i < n; i++) { /* a geodesic of unit speed on a circle or sphere has the acceleration -x */
-    const PetscInt kind = domain->kind[v[corner[i]]];
-    if (kind != EQM_VERTEX_CIRCLE && kind != EQM_VERTEX_SPHERE) continue;
-    for (PetscInt c = 0; c < dim; c++) second[i][i] -= gradient[dim * corner[i] + c] * x[corner[i]][c];
-  }
-  return n;
-}
-
 static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 {
   const Hessian *const h = context;
   const EqmMesh mesh = h->solver->mesh;
   const PetscReal scale = 2. / (mesh->weight[cell] * h->solver->totals.total);
-  PetscReal first[6], second[6][6];
-  PetscInt corner[6];
-  const PetscInt n = CellDerivatives(h->solver, cell, corner, first, second);
+  EqmCellDerivatives d;
 
-  for (PetscInt i = 0; i < n; i++) {
-    for (PetscInt j = 0; j < n; j++) matrix[n * i + j] = scale * first[i] * first[j] + h->slope[cell] * second[i][j];
-    matrix[n * i + i] -= h->shift * h->share[mesh->cells[3 * cell + corner[i]]];
+  EqmCellDifferentiate(h->solver->domain, &h->solver->place, cell, &d);
+  for (PetscInt i = 0; i < d.count; i++) {
+    for (PetscInt j = 0; j < d.count; j++)
+      matrix[d.count * i + j] = scale * d.first[i] * d.first[j] + h->slope[cell] * d.second[i][j];
+    matrix[d.count * i + i] -= h->shift * h->share[mesh->cells[mesh->cell_size * cell + d.corner[i]]];
   }
 }
 
@@ -99,18 +49,18 @@ static PetscErrorCode Prepare(Hessian *h)
   PetscCall(PetscCalloc1(mesh->num_local, &norm));
   PetscCall(PetscArrayzero(h->share, mesh->num_local));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    PetscReal first[6], second[6][6], squares = 0., diagonal = 0.;
-    PetscInt corner[6];
-    const PetscInt n = CellDerivatives(h->solver, c, corner, first, second);
+    PetscReal squares = 0., diagonal = 0.;
+    EqmCellDerivatives d;
+    EqmCellDifferentiate(h->solver->domain, &h->solver->place, c, &d);
     h->slope[c] = 2. * (h->solver->image[c] / (mesh->weight[c] * totals->total) - 1.) - totals->energy / totals->total;
-    for (PetscInt i = 0; i < n; i++) {
-      for (PetscInt j = 0; j < n; j++) squares += PetscSqr(h->slope[c] * second[i][j]);
-      diagonal = PetscMax(diagonal, 2. * first[i] * first[i] / (mesh->weight[c] * totals->total));
+    for (PetscInt i = 0; i < d.count; i++) {
+      for (PetscInt j = 0; j < d.count; j++) squares += PetscSqr(h->slope[c] * d.second[i][j]);
+      diagonal = PetscMax(diagonal, 2. * d.first[i] * d.first[i] / (mesh->weight[c] * totals->total));
     }
     largest[1] = PetscMax(largest[1], diagonal);
-    for (PetscInt a = 0; a < 3; a++) {
-      norm[mesh->cells[3 * c + a]] += PetscSqrtReal(squares);
-      h->share[mesh->cells[3 * c + a]] += 1.;
+    for (PetscInt a = 0; a < mesh->cell_size; a++) {
+      norm[mesh->cells[mesh->cell_size * c + a]] += PetscSqrtReal(squares);
+      h->share[mesh->cells[mesh->cell_size * c + a]] += 1.;
     }
   }
   for (PetscInt v = 0; v < mesh->num_owned; v++) largest[0] = PetscMax(largest[0], norm[v]);

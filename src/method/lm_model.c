@@ -26,12 +26,11 @@ static inline void CellGradients(EqmSolver solver, PetscInt cell, PetscInt n, co
   const EqmLm *const lm = solver->data;
   const EqmDomain domain = solver->domain;
   const PetscInt *const v = solver->mesh->cells + 3 * cell, dim = domain->dim;
-  const PetscReal *const x = lm->now.place.x, *const p = x + dim * v[0], *const q = x + dim * v[1],
-                         *const r = x + dim * v[2];
-  PetscReal area[9], det[9];
+  const PetscReal *const x = lm->now.place.x, *const p[] = {x + dim * v[0], x + dim * v[1], x + dim * v[2]};
+  PetscReal area[3 * EQM_MOST_CORNERS], det[3 * EQM_MOST_CORNERS];
 
-  EqmMeasureGradient(domain->measure, p, q, r, area);
-  if (lm->kappa > 0.) EqmMeasureGradient(EQM_MEASURE_HALF_DET, p, q, r, det);
+  EqmMeasureGradient(domain->measure, p, area);
+  if (lm->kappa > 0.) EqmMeasureGradient(EQM_MEASURE_HALF_DET, p, det);
   for (PetscInt i = 0; i < n; i++) {
     PetscReal along_area = 0., along_det = 0.;
     for (PetscInt k = 0; k < dim; k++) along_area += area[dim * corner[i] + k] * basis[i][k];

@@ -5,23 +5,27 @@ typedef struct {
   EqmMesh mesh;
   const PetscReal *weights;
   const signed char *group;
-  const PetscReal *mass; /* per cell, added to the diagonals of its corners in thirds; NULL: none */
+  const PetscReal *mass; /* per cell, added to the diagonals of its corners in equal parts; NULL: none */
 } GroupMatrix;
 
 static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
 {
   const GroupMatrix *const g = context;
-  const PetscInt *const v = g->mesh->cells + 3 * cell;
-  const PetscReal *const w = g->weights + 3 * cell, mass = g->mass ? g->mass[cell] / 3. : 0.;
+  const PetscInt n = g->mesh->cell_size, edges = EqmCellEdges(n), *const v = g->mesh->cells + n * cell;
 
-  for (PetscInt a = 0; a < 3; a++) {
-    const PetscBool fixed = (PetscBool)(g->group[v[a]] == EQM_GROUP_FIXED);
-    for (PetscInt b = 0; b < 3; b++) {
-      if (a == b)
-        matrix[4 * a] = fixed ? 1. : w[(a + 1) % 3] + w[(a + 2) % 3] + mass;
-      else
-        matrix[3 * a + b] = fixed || g->group[v[a]] != g->group[v[b]] ? 0. : -w[3 - a - b];
-    }
+  for (PetscInt k = 0; k < n * n; k++) matrix[k] = 0.;
+  for (PetscInt a = 0; a < n && g->mass; a++) matrix[(n + 1) * a] = g->mass[cell] / (PetscReal)n;
+  for (PetscInt e = 0; e < edges; e++) {
+    const PetscReal w = g->weights[edges * cell + e];
+    PetscInt a, b;
+    EqmCellEdge(n, e, &a, &b);
+    matrix[(n + 1) * a] += w;
+    matrix[(n + 1) * b] += w;
+    if (g->group[v[a]] == g->group[v[b]]) matrix[n * a + b] = matrix[n * b + a] = -w;
+  }
+  for (PetscInt a = 0; a < n; a++) {
+    if (g->group[v[a]] != EQM_GROUP_FIXED) continue;
+    for (PetscInt b = 0; b < n; b++) matrix[n * a + b] = matrix[n * b + a] = a == b ? 1. : 0.;
   }
 }
 
@@ -51,7 +55,7 @@ PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const 
   PetscCall(EqmLinearFactor(solver->scalar, CellLaplacian, &matrix, 1., &success));
   if (!success) {
     EqmFail(solver->comm, EQM_ERR_MESH,
-            "a Laplacian of this mesh is not positive definite (very obtuse or degenerate triangles); remesh, or start "
+            "a Laplacian of this mesh is not positive definite (very obtuse or degenerate cells); remesh, or start "
             "with -start tutte");
   }
   PetscFunctionReturn(0);
@@ -121,23 +125,25 @@ PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const 
 {
   const EqmMesh mesh = solver->mesh;
   const EqmDomain domain = solver->domain;
-  signed char *group[2];
+  signed char *group;
   PetscInt differs = 0, any;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(mesh->num_local, &group[0], mesh->num_local, &group[1]));
+  PetscCall(PetscMalloc1(domain->dim * mesh->num_local, &group));
   PetscCall(EqmPlaceCopy(domain, from, to));
-  for (PetscInt v = 0; v < mesh->num_local; v++) {
-    for (PetscInt c = 0; c < 2; c++)
-      group[c][v] = CoordinateIsFree((EqmVertexKind)domain->kind[v], c) ? 0 : EQM_GROUP_FIXED;
-    differs |= group[0][v] != group[1][v];
+  for (PetscInt c = 0; c < domain->dim; c++) {
+    for (PetscInt v = 0; v < mesh->num_local; v++) {
+      group[c * mesh->num_local + v] = CoordinateIsFree((EqmVertexKind)domain->kind[v], c) ? 0 : EQM_GROUP_FIXED;
+      differs |= group[c * mesh->num_local + v] != group[v];
+    }
   }
   PetscCall(MPIU_Allreduce(&differs, &any, 1, MPIU_INT, MPI_MAX, mesh->comm));
   if (any) { /* coordinates with the same vertices free share a factor */
-    for (PetscInt c = 0; c < 2; c++) PetscCall(SolveCoordinates(solver, weights, group[c], c, 1, to));
+    for (PetscInt c = 0; c < domain->dim; c++)
+      PetscCall(SolveCoordinates(solver, weights, group + c * mesh->num_local, c, 1, to));
   } else {
-    PetscCall(SolveCoordinates(solver, weights, group[0], 0, 2, to));
+    PetscCall(SolveCoordinates(solver, weights, group, 0, domain->dim, to));
   }
-  PetscCall(PetscFree2(group[0], group[1]));
+  PetscCall(PetscFree(group));
   PetscFunctionReturn(0);
 }

@@ -138,6 +138,25 @@ static inline PetscErrorCode TestRandomStep(EqmDomain domain, PetscInt seed, Pet
   PetscFunctionReturn(0);
 }
 
+/* The mesh "ball" as a map of itself, every vertex moved at random by up to `size` in each coordinate. */
+static inline PetscErrorCode TestShakenBall(EqmDomain domain, PetscInt seed, PetscReal size, EqmPlace *place)
+{
+  const EqmMesh mesh = domain->mesh;
+
+  PetscFunctionBegin;
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    PetscReal *const x = place->x + 3 * v, squared = 0.;
+    for (PetscInt k = 0; k < 3; k++) {
+      x[k] = mesh->position[3 * v + k] + size * TestRandom(seed, mesh->vertex_input[v], k);
+      squared += x[k] * x[k];
+    }
+    for (PetscInt k = 0; k < 3 && mesh->on_boundary[v]; k++) x[k] /= PetscSqrtReal(squared);
+  }
+  PetscCall(EqmMeshUpdateGhosts(mesh, 3, place->x));
+  PetscCall(EqmPlaceMakeFrames(domain, place));
+  PetscFunctionReturn(0);
+}
+
 static inline PetscReal TestSum(MPI_Comm comm, PetscReal local)
 {
   PetscReal sum;

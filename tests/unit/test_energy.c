@@ -1,6 +1,7 @@
 /* Energies, their gradients against central differences along geodesics, second derivatives, identities of Laplacians.
  */
 #include "support/testing.h"
+#include "energy/curvature.h"
 
 /* A function of a map. */
 typedef PetscErrorCode (*Function)(EqmDomain domain, const EqmPlace *place, PetscReal *value, Vec gradient);
@@ -16,19 +17,21 @@ static PetscErrorCode Authalic(EqmDomain domain, const EqmPlace *place, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* E_S = 1/2 tr(f^T L_S f), gradient 2 L_S f (000 (11), 002 (21)). */
+/* E_S = 1/2 tr(f^T L_S f), gradient 2 L_S f (000 (11), 002 (21)); of solids E_V with L_V, gradient 3 L_V f (003 (8)).
+ */
 static PetscErrorCode Stretch(EqmDomain domain, const EqmPlace *place, PetscReal *value, Vec gradient)
 {
   const EqmMesh mesh = domain->mesh;
   PetscReal *weights, *ambient;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(3 * mesh->num_local_cells, &weights, 2 * mesh->num_owned, &ambient));
+  PetscCall(PetscMalloc2(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &weights, domain->dim * mesh->num_owned,
+                         &ambient));
   PetscCall(EqmLaplacianWeights(domain, EQM_LAPLACIAN_STRETCH, place, weights));
-  PetscCall(EqmLaplacianEnergy(mesh, weights, 2, place->x, value));
+  PetscCall(EqmLaplacianEnergy(mesh, weights, domain->dim, place->x, value));
   if (gradient) {
-    PetscCall(EqmLaplacianApply(mesh, weights, 2, place->x, ambient));
-    for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) ambient[k] *= 2.;
+    PetscCall(EqmLaplacianApply(mesh, weights, domain->dim, place->x, ambient));
+    for (PetscInt k = 0; k < domain->dim * mesh->num_owned; k++) ambient[k] *= mesh->cell_size - 1.;
     PetscCall(EqmDomainProject(domain, place, ambient, gradient));
   }
   PetscCall(PetscFree2(weights, ambient));
@@ -42,11 +45,12 @@ static PetscErrorCode Dirichlet(EqmDomain domain, const EqmPlace *place, PetscRe
   PetscReal *weights, *ambient;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(3 * mesh->num_local_cells, &weights, 2 * mesh->num_owned, &ambient));
+  PetscCall(PetscMalloc2(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &weights, domain->dim * mesh->num_owned,
+                         &ambient));
   PetscCall(EqmLaplacianWeights(domain, EQM_LAPLACIAN_COTANGENT, NULL, weights));
-  PetscCall(EqmLaplacianEnergy(mesh, weights, 2, place->x, value));
+  PetscCall(EqmLaplacianEnergy(mesh, weights, domain->dim, place->x, value));
   if (gradient) {
-    PetscCall(EqmLaplacianApply(mesh, weights, 2, place->x, ambient));
+    PetscCall(EqmLaplacianApply(mesh, weights, domain->dim, place->x, ambient));
     PetscCall(EqmDomainProject(domain, place, ambient, gradient));
   }
   PetscCall(PetscFree2(weights, ambient));
@@ -97,7 +101,7 @@ static PetscErrorCode TestGradient(EqmDomain domain, Function function, const Eq
 static PetscErrorCode TestSecondDerivatives(EqmDomain domain, const EqmPlace *place)
 {
   const EqmMesh mesh = domain->mesh;
-  const PetscInt m = mesh->num_local_cells, n = 2 * mesh->num_local;
+  const PetscInt m = mesh->num_local_cells, n = domain->dim * mesh->num_local;
   const PetscReal h = 1e-3;
   PetscReal *velocity, *acceleration, *first, *second, *a, largest = 0.;
   EqmPlace to;
@@ -163,7 +167,8 @@ static PetscErrorCode TestLaplacian(EqmDomain domain, EqmLaplacianKind kind, con
   PetscReal *weights, *x, *y, product[2] = {0., 0.}, energy, half = 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(3 * mesh->num_local_cells, &weights, 3 * mesh->num_local, &x, 3 * mesh->num_owned, &y));
+  PetscCall(PetscMalloc3(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &weights, 3 * mesh->num_local, &x,
+                         3 * mesh->num_owned, &y));
   PetscCall(EqmLaplacianWeights(domain, kind, place, weights));
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
     x[3 * v] = 1. / 3.;
@@ -184,24 +189,129 @@ static PetscErrorCode TestLaplacian(EqmDomain domain, EqmLaplacianKind kind, con
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TestTarget(const char *shape, PetscInt n, const char *target)
+/* Every derivative of a cell's measure that the Hessian takes, against those along one geodesic. */
+static PetscErrorCode TestCellDerivatives(EqmDomain domain, const EqmPlace *place)
+{
+  const EqmMesh mesh = domain->mesh;
+  PetscReal *velocity, *acceleration, *first, *second;
+  const PetscScalar *s;
+  Vec step;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(domain->dim * mesh->num_local, &velocity, domain->dim * mesh->num_local, &acceleration,
+                         mesh->num_local_cells, &first, mesh->num_local_cells, &second));
+  PetscCall(EqmDomainCreateVec(domain, &step));
+  PetscCall(TestRandomStep(domain, 11, .5, step));
+  PetscCall(EqmDomainExpand(domain, place, step, velocity));
+  PetscCall(EqmDomainCurvature(domain, place, velocity, acceleration));
+  PetscCall(EqmImageDerivatives(domain, place, velocity, acceleration, first, second));
+  PetscCall(VecGetArrayRead(step, &s));
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
+    EqmCellDerivatives d;
+    PetscReal x[EQM_MOST_CELL_DOFS], rate = 0., bend = 0., size = 1.;
+    PetscInt n = 0;
+    PetscBool mine = PETSC_TRUE;
+    EqmCellDifferentiate(domain, place, c, &d);
+    for (PetscInt a = 0; a < mesh->cell_size; a++) {
+      const PetscInt v = mesh->cells[mesh->cell_size * c + a];
+      mine = (PetscBool)(mine && v < mesh->num_owned);
+      for (PetscInt k = 0; k < domain->dof_count[v]; k++, n++)
+        x[n] = mine ? s[domain->dof_start[v] - domain->dof_first + k] : 0.;
+    }
+    CHECK(n == d.count, "%d degrees of freedom, not %d", (int)d.count, (int)n);
+    if (!mine) continue;
+    for (PetscInt i = 0; i < n; i++) {
+      rate += d.first[i] * x[i];
+      for (PetscInt j = 0; j < n; j++) bend += x[i] * d.second[i][j] * x[j];
+      size += x[i] * x[i];
+    }
+    CHECK_CLOSE(rate, first[c], 1e-13, size);
+    CHECK_CLOSE(bend, second[c], 1e-13, size);
+  }
+  PetscCall(VecRestoreArrayRead(step, &s));
+  PetscCall(VecDestroy(&step));
+  PetscCall(PetscFree4(velocity, acceleration, first, second));
+  PetscFunctionReturn(0);
+}
+
+/* grad E_V = 3 L_V f, each to the rounding of one cell's terms, not of the sum (003 (8)). */
+static PetscErrorCode TestStretchGradient(EqmDomain domain, const EqmPlace *place)
+{
+  const EqmMesh mesh = domain->mesh;
+  PetscReal *weights, *a, *by_matrix, *by_cells, largest = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &weights, mesh->num_local_cells, &a,
+                         domain->dim * mesh->num_owned, &by_matrix, domain->dim * mesh->num_owned, &by_cells));
+  PetscCall(EqmLaplacianWeights(domain, EQM_LAPLACIAN_STRETCH, place, weights));
+  PetscCall(EqmLaplacianApply(mesh, weights, domain->dim, place->x, by_matrix));
+  PetscCall(EqmImageMeasure(domain, place, a));
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) a[c] *= 2. / mesh->weight[c];
+  PetscCall(EqmImageGradient(domain, place, a, by_cells));
+  for (PetscInt k = 0; k < domain->dim * mesh->num_owned; k++) largest = PetscMax(largest, PetscAbsReal(by_cells[k]));
+  largest = TestMax(mesh->comm, largest);
+  for (PetscInt k = 0; k < domain->dim * mesh->num_owned; k++)
+    CHECK_CLOSE((mesh->cell_size - 1.) * by_matrix[k], by_cells[k], 1e-12, largest);
+  PetscCall(PetscFree4(weights, a, by_matrix, by_cells));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestPlace(EqmDomain domain, const EqmPlace *place)
 {
   static const Function functions[] = {Authalic, Stretch, Dirichlet};
+
+  PetscFunctionBegin;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(functions); k++)
+    PetscCall(TestGradient(domain, functions[k], place));
+  PetscCall(TestSecondDerivatives(domain, place));
+  PetscCall(TestCellDerivatives(domain, place));
+  PetscCall(TestStretchIdentities(domain, place));
+  PetscCall(TestStretchGradient(domain, place));
+  PetscCall(TestLaplacian(domain, EQM_LAPLACIAN_UNIFORM, place));
+  PetscCall(TestLaplacian(domain, EQM_LAPLACIAN_COTANGENT, place));
+  PetscCall(TestLaplacian(domain, EQM_LAPLACIAN_STRETCH, place));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestTarget(const char *shape, PetscInt n, const char *target)
+{
   TestMesh test;
   EqmSolver solver;
 
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 3, &test));
   PetscCall(TestStart(test.mesh, target, &solver));
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(functions); k++) {
-    PetscCall(TestGradient(solver->domain, functions[k], &solver->place));
-  }
-  PetscCall(TestSecondDerivatives(solver->domain, &solver->place));
-  PetscCall(TestStretchIdentities(solver->domain, &solver->place));
-  PetscCall(TestLaplacian(solver->domain, EQM_LAPLACIAN_UNIFORM, &solver->place));
-  PetscCall(TestLaplacian(solver->domain, EQM_LAPLACIAN_COTANGENT, &solver->place));
-  PetscCall(TestLaplacian(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place));
+  PetscCall(TestPlace(solver->domain, &solver->place));
   PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* A ball, shaken: identities and derivatives ask for no good map. */
+static PetscErrorCode TestSolid(void)
+{
+  TestMesh test;
+  EqmDomain domain;
+  EqmPlace place;
+  PetscReal *a;
+  PetscInt64 folds;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "ball", 600, 3, &test));
+  PetscCall(EqmDomainCreateBall(test.mesh, &domain));
+  PetscCall(EqmPlaceCreate(domain, &place));
+  PetscCall(TestShakenBall(domain, 5, .03, &place));
+  PetscCall(TestPlace(domain, &place));
+  PetscCall(PetscMalloc1(test.mesh->num_local_cells, &a));
+  PetscCall(TestShakenBall(domain, 5, 0., &place));
+  PetscCall(EqmImageFolds(domain, &place, a, &folds));
+  CHECK(folds == 0, "%d folds", (int)folds);
+  for (PetscInt v = 0; v < test.mesh->num_local; v++) place.x[3 * v] *= -1.;
+  PetscCall(EqmImageFolds(domain, &place, a, &folds));
+  CHECK(folds == test.mesh->num_cells, "%d folds in a mirrored map", (int)folds);
+  PetscCall(PetscFree(a));
+  PetscCall(EqmPlaceDestroy(&place));
+  PetscCall(EqmDomainDestroy(&domain));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);
 }
@@ -214,6 +324,7 @@ int main(int argc, char **argv)
   PetscCall(TestTarget("cap", 300, "disk"));
   PetscCall(TestTarget("hills", 400, "square"));
   PetscCall(TestTarget("patch", 300, "square"));
+  PetscCall(TestSolid());
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }

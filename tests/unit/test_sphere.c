@@ -267,7 +267,7 @@ static void RandomTriangle(PetscInt seed, PetscReal f[9])
 /* 001 Appendix A: the derivatives of the area by corner i; in that by f_i^3 both terms have the same sign. */
 static void TestAppendixA(PetscInt seed)
 {
-  PetscReal f[9], g[9], ij[3], ik[3], jk[3];
+  PetscReal f[9], g[12], ij[3], ik[3], jk[3];
 
   RandomTriangle(seed, f);
   for (PetscInt k = 0; k < 3; k++) {
@@ -278,7 +278,8 @@ static void TestAppendixA(PetscInt seed)
   const PetscReal a12 = ij[0] * ik[1] - ij[1] * ik[0], a13 = ij[0] * ik[2] - ij[2] * ik[0],
                   a23 = ij[1] * ik[2] - ij[2] * ik[1];
   const PetscReal area = .5 * PetscSqrtReal(a12 * a12 + a13 * a13 + a23 * a23); /* 001 (2.5) */
-  EqmMeasureGradient(EQM_MEASURE_AREA3, f, f + 3, f + 6, g);
+  const PetscReal *const corner[] = {f, f + 3, f + 6};
+  EqmMeasureGradient(EQM_MEASURE_AREA3, corner, g);
   CHECK_CLOSE(EqmArea3(f, f + 3, f + 6), area, 1e-14, area);
   CHECK_CLOSE(g[0], (a12 * jk[1] + a13 * jk[2]) / (4. * area), 1e-13, 1.);
   CHECK_CLOSE(g[1], -(a12 * jk[0] - a23 * jk[2]) / (4. * area), 1e-13, 1.);
@@ -290,7 +291,7 @@ static void TestAppendixA(PetscInt seed)
 /* 001 Appendix B: the Hessian of E_S = a^2/|t| of one triangle, |t| = 1: blocks over coordinates s and t. */
 static void TestAppendixB(PetscInt seed)
 {
-  PetscReal f[9], d[9], g[9], along = 0., form = 0., h[3][3], x[3][3];
+  PetscReal f[9], d[9], g[12], along = 0., form = 0., h[3][3], x[3][3];
 
   RandomTriangle(seed, f);
   RandomTriangle(seed + 100, d);
@@ -310,9 +311,10 @@ static void TestAppendixB(PetscInt seed)
     }
   }
   form *= .5;
-  EqmMeasureGradient(EQM_MEASURE_AREA3, f, f + 3, f + 6, g);
+  const PetscReal *const corner[] = {f, f + 3, f + 6}, *const velocity[] = {d, d + 3, d + 6};
+  EqmMeasureGradient(EQM_MEASURE_AREA3, corner, g);
   for (PetscInt k = 0; k < 9; k++) along += g[k] * d[k];
-  const PetscReal bend = EqmMeasureBend(EQM_MEASURE_AREA3, f, f + 3, f + 6, d, d + 3, d + 6);
+  const PetscReal bend = EqmMeasureBend(EQM_MEASURE_AREA3, corner, velocity);
   CHECK_CLOSE(2. * (along * along + EqmArea3(f, f + 3, f + 6) * bend), form, 1e-12, 1. + PetscAbsReal(form));
 }
 

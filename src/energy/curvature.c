@@ -1,0 +1,61 @@
+/* First and second derivatives of a cell's image measure along the geodesics of its corners. */
+#include "energy/curvature.h"
+#include "energy/kernel.h"
+
+/* Displacements of the corners of a cell. */
+typedef struct {
+  PetscReal x[3 * EQM_MOST_CORNERS];
+} Displacement;
+
+/* The displacements that a cell's degrees of freedom stand for. */
+static void FindDirections(EqmDomain domain, const EqmPlace *place, const PetscInt *vertex, EqmCellDerivatives *d,
+                           Displacement direction[EQM_MOST_CELL_DOFS])
+{
+  d->count = 0;
+  for (PetscInt a = 0; a < domain->mesh->cell_size; a++) {
+    PetscReal frame[9];
+    const PetscInt count = EqmDomainFrame(domain, place, vertex[a], frame);
+    for (PetscInt k = 0; k < count; k++, d->count++) {
+      d->corner[d->count] = a;
+      direction[d->count] = (Displacement){{0.}};
+      for (PetscInt c = 0; c < domain->dim; c++)
+        direction[d->count].x[domain->dim * a + c] = frame[domain->dim * k + c];
+    }
+  }
+}
+
+static PetscReal Bend(EqmDomain domain, const PetscReal *const p[], const Displacement *displacement)
+{
+  const PetscReal *d[EQM_MOST_CORNERS];
+
+  for (PetscInt a = 0; a < domain->mesh->cell_size; a++) d[a] = displacement->x + domain->dim * a;
+  return EqmMeasureBend(domain->measure, p, d);
+}
+
+/* Straight motions first, mixed derivatives by polarisation; then what the geodesics' curvature adds. Not collective.
+ */
+void EqmCellDifferentiate(EqmDomain domain, const EqmPlace *place, PetscInt cell, EqmCellDerivatives *d)
+{
+  const PetscInt dim = domain->dim, corners = domain->mesh->cell_size, *const v = domain->mesh->cells + corners * cell;
+  const PetscReal *p[EQM_MOST_CORNERS];
+  PetscReal gradient[3 * EQM_MOST_CORNERS];
+  Displacement direction[EQM_MOST_CELL_DOFS], sum;
+
+  for (PetscInt a = 0; a < corners; a++) p[a] = place->x + dim * v[a];
+  FindDirections(domain, place, v, d, direction);
+  EqmMeasureGradient(domain->measure, p, gradient);
+  for (PetscInt i = 0; i < d->count; i++) {
+    d->first[i] = 0.;
+    for (PetscInt k = 0; k < dim * corners; k++) d->first[i] += gradient[k] * direction[i].x[k];
+    d->second[i][i] = Bend(domain, p, &direction[i]);
+    for (PetscInt j = 0; j < i; j++) {
+      for (PetscInt k = 0; k < dim * corners; k++) sum.x[k] = direction[i].x[k] + direction[j].x[k];
+      d->second[i][j] = d->second[j][i] = .5 * (Bend(domain, p, &sum) - d->second[i][i] - d->second[j][j]);
+    }
+  }
+  for (PetscInt i = 0; i < d->count; i++) { /* a geodesic of unit speed on a circle or sphere has the acceleration -x */
+    const PetscInt a = d->corner[i], kind = domain->kind[v[a]];
+    if (kind != EQM_VERTEX_CIRCLE && kind != EQM_VERTEX_SPHERE) continue;
+    for (PetscInt c = 0; c < dim; c++) d->second[i][i] -= gradient[dim * a + c] * p[a][c];
+  }
+}
