@@ -287,7 +287,7 @@ PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place,
 
   PetscFunctionBegin;
   *in_order = PETSC_TRUE;
-  if (!domain->arc_length) PetscFunctionReturn(0);
+  if (domain->kind_of_boundary == EQM_VERTEX_SPHERE) PetscFunctionReturn(0);
   for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
     const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
     if (i >= mesh->num_owned) continue;
