@@ -92,6 +92,9 @@ PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, Pe
    held values on entry, all values on return. Counts a factorisation. Collective. */
 PETSC_INTERN PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const signed char *group,
                                          PetscInt width, PetscReal *z);
+/* The same once EqmGroupFactor has factored these weights and groups. Collective. */
+PETSC_INTERN PetscErrorCode EqmHeldExtend(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                                          PetscInt width, PetscReal *z);
 /* Planar: coordinates that are free of constraint solve L x = 0 with all others held: the discrete harmonic map for
    `weights`. `to` gets the result; ghosts up to date. Collective. */
 PETSC_INTERN PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const EqmPlace *from,

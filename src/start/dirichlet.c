@@ -75,8 +75,8 @@ static PetscBool CoordinateIsFree(EqmVertexKind kind, PetscInt c)
                      (kind == EQM_VERTEX_SIDE_Y && c == 1));
 }
 
-PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
-                            PetscReal *z)
+PetscErrorCode EqmHeldExtend(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
+                             PetscReal *z)
 {
   const EqmMesh mesh = solver->mesh;
   const PetscInt n = mesh->num_owned;
@@ -91,13 +91,21 @@ PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const si
   for (PetscInt v = 0; v < n; v++) {
     for (PetscInt k = 0; k < width; k++) columns[k * n + v] = group[v] == EQM_GROUP_FIXED ? 0. : -pull[width * v + k];
   }
-  PetscCall(EqmGroupFactor(solver, weights, group, NULL));
   PetscCall(EqmGroupSolve(solver, width, columns));
   for (PetscInt v = 0; v < n; v++) {
     for (PetscInt k = 0; k < width && group[v] != EQM_GROUP_FIXED; k++) z[width * v + k] = columns[k * n + v];
   }
   PetscCall(PetscFree3(held, pull, columns));
   PetscCall(EqmMeshUpdateGhosts(mesh, width, z));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
+                            PetscReal *z)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmGroupFactor(solver, weights, group, NULL));
+  PetscCall(EqmHeldExtend(solver, weights, group, width, z));
   PetscFunctionReturn(0);
 }
 

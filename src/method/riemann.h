@@ -1,0 +1,44 @@
+/* The conformal energy of a map to the unit disk, as a function of the boundary's angles alone. */
+#ifndef EQM_RIEMANN_H
+#define EQM_RIEMANN_H
+
+#include "method/method.h"
+
+/* The interior follows the boundary harmonically, z_I = -L_II^-1 L_IB z_B, so that with z_B = e^{i theta}
+
+       E(theta) = 1/2 z^H L z - 1/2 sum sin(theta_{j+1} - theta_j) + 1/2 |h . z_B|^2,  h = m_B - L_BI L_II^-1 m_I.
+
+   The first two terms are the Dirichlet energy less the area that the boundary encloses, zero for conformal maps alone.
+   The last holds the mass centre c = sum m z = h . z_B (m: lumped mass, one in all) at the disk's: conformal maps of
+   the disk to itself change the first two by the error of the mesh only, and would drift. */
+typedef struct _p_EqmRiemann *EqmRiemann;
+struct _p_EqmRiemann {
+  PetscInt num_boundary; /* owned vertices on the boundary */
+  PetscInt *boundary;    /* their local numbers */
+  PetscReal *centre;     /* h, per entry of `boundary` */
+  PetscReal *weights;    /* cotangents, per local cell */
+  signed char *group;    /* per local vertex: EQM_GROUP_FIXED on the boundary, 0 inside */
+  PetscReal *scratch;    /* two per owned vertex */
+  Vec move;              /* degrees of freedom of the domain: zero inside */
+};
+
+/* Factors L_II, the one factorisation. Collective. */
+PETSC_INTERN PetscErrorCode EqmRiemannCreate(EqmSolver solver, EqmRiemann *riemann);
+PETSC_INTERN PetscErrorCode EqmRiemannDestroy(EqmRiemann *riemann);
+/* A vector of boundary angles. Collective. */
+PETSC_INTERN PetscErrorCode EqmRiemannCreateVec(EqmSolver solver, EqmRiemann riemann, Vec *angles);
+/* Turn the boundary by t times `angles`; the interior is left where it was. Collective. */
+PETSC_INTERN PetscErrorCode EqmRiemannMove(EqmSolver solver, EqmRiemann riemann, const EqmPlace *from, PetscReal t,
+                                           Vec angles, EqmPlace *to);
+/* The largest t in (0, 1] for which t times `angles` keeps the boundary's order, with a margin. Collective. */
+PETSC_INTERN PetscErrorCode EqmRiemannStepInOrder(EqmSolver solver, EqmRiemann riemann, const EqmPlace *from,
+                                                  Vec angles, PetscReal *t);
+/* E and its gradient by the angles, where `place` has the boundary; puts the interior at its place. Two solves, one
+   evaluation. Collective. */
+PETSC_INTERN PetscErrorCode EqmRiemannEnergy(EqmSolver solver, EqmRiemann riemann, EqmPlace *place, PetscReal *energy,
+                                             Vec gradient);
+/* Bring the mass centre to the disk's centre by a Moebius map of the disk to itself, applied to the boundary.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmRiemannCentre(EqmSolver solver, EqmRiemann riemann, EqmPlace *place);
+
+#endif

@@ -1,0 +1,192 @@
+/* The Riemann map: gradient by the boundary's angles, the loop's metric, maps that are known. */
+#include "support/testing.h"
+#include "method/loopmetric.h"
+#include "method/riemann.h"
+
+/* Angles at random, the same on any number of ranks. */
+static PetscErrorCode RandomAngles(EqmSolver solver, EqmRiemann riemann, PetscInt seed, Vec angles)
+{
+  PetscScalar *a;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(angles, &a));
+  for (PetscInt b = 0; b < riemann->num_boundary; b++)
+    a[b] = TestRandom(seed, solver->mesh->vertex_input[riemann->boundary[b]], 0);
+  PetscCall(VecRestoreArrayWrite(angles, &a));
+  PetscFunctionReturn(0);
+}
+
+/* The slope of the energy along a direction, by central differences. */
+static PetscErrorCode TestGradient(void)
+{
+  const PetscReal h = 1e-4;
+  TestMesh test;
+  EqmSolver solver;
+  EqmRiemann riemann;
+  EqmPlace place;
+  Vec direction, gradient;
+  PetscReal energy, ahead, behind, slope;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 400, 3, &test));
+  PetscCall(TestStart(test.mesh, "disk", &solver));
+  PetscCall(EqmRiemannCreate(solver, &riemann));
+  PetscCall(EqmRiemannCreateVec(solver, riemann, &direction));
+  PetscCall(VecDuplicate(direction, &gradient));
+  PetscCall(EqmPlaceCreate(solver->domain, &place));
+  PetscCall(RandomAngles(solver, riemann, 1, direction));
+  PetscCall(EqmRiemannMove(solver, riemann, &solver->place, .01, direction, &solver->place));
+  PetscCall(RandomAngles(solver, riemann, 2, direction));
+  PetscCall(EqmRiemannEnergy(solver, riemann, &solver->place, &energy, gradient));
+  PetscCall(VecDot(gradient, direction, &slope));
+  PetscCall(EqmRiemannMove(solver, riemann, &solver->place, h, direction, &place));
+  PetscCall(EqmRiemannEnergy(solver, riemann, &place, &ahead, gradient));
+  PetscCall(EqmRiemannMove(solver, riemann, &solver->place, -h, direction, &place));
+  PetscCall(EqmRiemannEnergy(solver, riemann, &place, &behind, gradient));
+  CHECK_CLOSE((ahead - behind) / (2. * h), slope, 1e-6, PetscAbsReal(slope));
+  CHECK(energy > .01, "energy %g", (double)energy);
+  PetscCall(EqmPlaceDestroy(&place));
+  PetscCall(VecDestroy(&direction));
+  PetscCall(VecDestroy(&gradient));
+  PetscCall(EqmRiemannDestroy(&riemann));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* Centring leaves the mass centre of the harmonic map at zero, and the boundary in its order. */
+static PetscErrorCode TestCentre(void)
+{
+  TestMesh test;
+  EqmSolver solver;
+  EqmRiemann riemann;
+  Vec gradient;
+  PetscReal energy, centre[2] = {0., 0.};
+  PetscBool in_order;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 400, 3, &test));
+  PetscCall(TestStart(test.mesh, "disk", &solver));
+  PetscCall(EqmRiemannCreate(solver, &riemann));
+  PetscCall(EqmRiemannCentre(solver, riemann, &solver->place));
+  PetscCall(EqmRiemannCreateVec(solver, riemann, &gradient));
+  PetscCall(EqmRiemannEnergy(solver, riemann, &solver->place, &energy, gradient));
+  for (PetscInt c = 0; c < test.mesh->num_owned_cells; c++) {
+    for (PetscInt k = 0; k < 6; k++)
+      centre[k % 2] += test.mesh->weight[c] / 3. * solver->place.x[2 * test.mesh->cells[3 * c + k / 2] + k % 2];
+  }
+  for (PetscInt k = 0; k < 2; k++) CHECK_CLOSE(TestSum(PETSC_COMM_WORLD, centre[k]), 0., 1e-11, 1.);
+  PetscCall(EqmDomainBoundaryInOrder(solver->domain, &solver->place, &in_order));
+  CHECK(in_order, "centring spoilt the boundary's order");
+  PetscCall(VecDestroy(&gradient));
+  PetscCall(EqmRiemannDestroy(&riemann));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* On vertices with equal gaps the metric's eigenvectors are cos k theta, the eigenvalues those of linear elements. */
+static PetscErrorCode TestLoopMetric(void)
+{
+  TestMesh test;
+  EqmDomain domain;
+  EqmLoopMetric metric;
+  PetscInt num = 0, *vertex, *place;
+  PetscReal *x, *arc, *g, *h;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 1500, 0, &test));
+  PetscCall(EqmDomainCreateDisk(test.mesh, &domain));
+  const PetscInt n = test.mesh->num_local;
+  PetscCall(PetscMalloc6(n, &vertex, n, &place, 2 * n, &x, n, &arc, n, &g, n, &h));
+  PetscCall(EqmMeshBoundaryLoop(test.mesh, place, arc));
+  const PetscReal gap = 2. * PETSC_PI / test.mesh->num_boundary_vertices;
+  for (PetscInt v = 0; v < n; v++) {
+    if (v < test.mesh->num_owned && test.mesh->on_boundary[v]) vertex[num++] = v;
+    x[2 * v] = PetscCosReal(gap * place[v]);
+    x[2 * v + 1] = PetscSinReal(gap * place[v]);
+  }
+  PetscCall(EqmLoopMetricCreate(test.mesh, num, vertex, x, &metric));
+  for (PetscInt k = 0; k < test.mesh->num_boundary_vertices / 2; k = 2 * k + 1) {
+    const PetscReal eigenvalue = 2. * (1. - PetscCosReal(k * gap)) / PetscSqr(gap) + .5;
+    for (PetscInt b = 0; b < num; b++) g[b] = PetscCosReal(k * gap * place[vertex[b]]);
+    PetscCall(EqmLoopMetricApply(metric, g, h));
+    for (PetscInt b = 0; b < num; b++) CHECK_CLOSE(h[b] * gap * PetscSqrtReal(eigenvalue), g[b], 2e-2, 1.);
+  }
+  PetscCall(EqmLoopMetricDestroy(&metric));
+  PetscCall(PetscFree6(vertex, place, x, arc, g, h));
+  PetscCall(EqmDomainDestroy(&domain));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* A cap, whose conformal map is the stereographic projection; `flat`: laid flat by that projection, so that the map is
+   its own image, exactly. */
+static PetscErrorCode CapError(PetscInt n, PetscBool flat, PetscReal *error, EqmDistortion *distortion)
+{
+  EqmSoup soup;
+  TestMesh test;
+  EqmSolver solver;
+  EqmMap map;
+  PetscReal *exact, radius = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "cap", n, 0, &soup));
+  for (PetscInt v = 0; v < soup->vertex_end - soup->vertex_start && flat; v++) {
+    PetscReal *const p = soup->vertices + 3 * v;
+    for (PetscInt k = 0; k < 2; k++) p[k] /= 1. + p[2];
+    p[2] = 0.;
+  }
+  PetscCall(TestMeshFromSoup(soup, &test));
+  PetscCall(TestSolve(test.mesh, "conformal", "-energy_rtol 0 -gradient_tol 1e-10", &solver));
+  PetscCall(PetscMalloc1(2 * test.mesh->num_local, &exact));
+  for (PetscInt v = 0; v < test.mesh->num_local; v++) {
+    const PetscReal *const p = test.mesh->position + 3 * v;
+    for (PetscInt k = 0; k < 2; k++) exact[2 * v + k] = p[k] / (1. + p[2]);
+    radius = PetscMax(radius, PetscSqrtReal(PetscSqr(exact[2 * v]) + PetscSqr(exact[2 * v + 1])));
+  }
+  radius = TestMax(PETSC_COMM_WORLD, radius);
+  for (PetscInt k = 0; k < 2 * test.mesh->num_local; k++) exact[k] /= radius;
+  *error = TestRmsAfterRotation(test.mesh, solver->place.x, exact);
+  PetscCall(EqmSolverGetMap(solver, test.soup, &map));
+  *distortion = map->distortion;
+  CHECK(map->status == EQM_STATUS_CONVERGED, "%s", map->message);
+  CHECK(map->work.factorizations == 1, "%d factorisations", (int)map->work.factorizations);
+  PetscCall(EqmMapDestroy(&map));
+  PetscCall(PetscFree(exact));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestKnownMaps(void)
+{
+  EqmDistortion coarse, fine, flat;
+  PetscReal coarse_error, fine_error, flat_error;
+
+  PetscFunctionBegin;
+  PetscCall(CapError(700, PETSC_TRUE, &flat_error, &flat));
+  CHECK(flat_error < 1e-8, "a flat disk moved by %g", (double)flat_error);
+  CHECK(flat.angle_error.max < 1e-5 && flat.folds == 0, "angles of a flat disk changed by up to %g degrees",
+        (double)flat.angle_error.max);
+  PetscCall(CapError(700, PETSC_FALSE, &coarse_error, &coarse));
+  PetscCall(CapError(2800, PETSC_FALSE, &fine_error, &fine));
+  CHECK(coarse_error < 5e-3 && coarse.folds == 0, "a cap is off by %g", (double)coarse_error);
+  CHECK(fine_error < coarse_error / 3., "errors %g and %g with half the mesh width: not of second order",
+        (double)coarse_error, (double)fine_error);
+  CHECK(fine.angle_error.mean < coarse.angle_error.mean / 1.6, "angle errors %g and %g degrees",
+        (double)coarse.angle_error.mean, (double)fine.angle_error.mean);
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestGradient());
+  PetscCall(TestCentre());
+  PetscCall(TestLoopMetric());
+  PetscCall(TestKnownMaps());
+  PetscCall(EqmFinalize());
+  return 0;
+}
