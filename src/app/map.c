@@ -125,7 +125,8 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
                         map->soup->file, map->soup->num_vertices, map->soup->num_cells, map->ranks,
                         map->ranks == 1 ? "" : "s", map->threads, map->threads == 1 ? "" : "s"));
   if (options->input.quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(map->status), map->message));
-  PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double)d->energy, (double)map->energy_initial));
+  PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double)map->energy_final,
+                        (double)map->energy_initial));
   PetscCall(PetscPrintf(comm, "  area ratio    sd %.3e   min %.4f   median %.6f   max %.4f\n", (double)d->ratio.sd,
                         (double)d->ratio.min, (double)d->ratio.p50, (double)d->ratio.max));
   PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean,

@@ -67,7 +67,8 @@ struct _p_EqmSolver {
   char message[EQM_MESSAGE_MAX];
 };
 
-PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm;
+PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,
+    EqmMethodRiemann;
 PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 
 /* Refresh solver->image and solver->totals from solver->place. Collective. */

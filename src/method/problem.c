@@ -55,17 +55,42 @@ PetscErrorCode EqmSumMeasures(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* ---- methods: name, first map, -max_it, -energy_rtol, -ratio_tol */
+PetscErrorCode EqmSumDirichlet(EqmSolver solver)
+{
+  PetscReal *weights;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSumMeasures(solver));
+  PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
+  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_COTANGENT, NULL, weights));
+  PetscCall(EqmLaplacianEnergy(solver->mesh, weights, solver->domain->dim, solver->place.x, &solver->totals.energy));
+  PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
+
+/* ---- meshes */
+static PetscErrorCode HasBoundary(EqmMesh mesh, PetscBool *has)
+{
+  PetscFunctionBegin;
+  *has = (PetscBool)(mesh->num_boundary_vertices > 0);
+  PetscFunctionReturn(0);
+}
+
+/* ---- methods: name, first map, -max_it, -energy_rtol, -ratio_tol, -gradient_tol */
 static const EqmOffer in_plane[] = {
-    {&EqmMethodLm, "guarded", 60, .05, 1e-4},      {&EqmMethodFixedPoint, "harmonic", 100, 1e-4, 0.},
-    {&EqmMethodNcg, "fixed-point", 100, 1e-4, 0.}, {&EqmMethodLbfgs, "guarded", 200, 1e-3, 0.},
-    {&EqmMethodRgd, "guarded", 100, 1e-6, 0.},
+    {&EqmMethodLm, "guarded", 60, .05, 1e-4, 0.},      {&EqmMethodFixedPoint, "harmonic", 100, 1e-4, 0., 0.},
+    {&EqmMethodNcg, "fixed-point", 100, 1e-4, 0., 0.}, {&EqmMethodLbfgs, "guarded", 200, 1e-3, 0., 0.},
+    {&EqmMethodRgd, "guarded", 100, 1e-6, 0., 0.},
 };
 
 static const EqmOffer on_sphere[] = {
-    {&EqmMethodLm, "guarded", 60, .05, 1e-4},     {&EqmMethodFixedPoint, "linear", 100, 1e-4, 0.},
-    {&EqmMethodNcg, "guarded", 100, 1e-4, 0.},    {&EqmMethodLbfgs, "guarded", 200, 1e-3, 0.},
-    {&EqmMethodRgd, "descending", 100, 1e-6, 0.},
+    {&EqmMethodLm, "guarded", 60, .05, 1e-4, 0.},     {&EqmMethodFixedPoint, "linear", 100, 1e-4, 0., 0.},
+    {&EqmMethodNcg, "guarded", 100, 1e-4, 0., 0.},    {&EqmMethodLbfgs, "guarded", 200, 1e-3, 0., 0.},
+    {&EqmMethodRgd, "descending", 100, 1e-6, 0., 0.},
+};
+
+static const EqmOffer conformal_in_disk[] = {
+    {&EqmMethodRiemann, "arc-length", 100, 0., 0., 1e-5},
 };
 
 #define OFFERS(list) .offers = (list), .num_offers = sizeof(list) / sizeof((list)[0])
@@ -99,6 +124,13 @@ static const EqmProblem problems[] = {
      .starts = EQM_STARTS_SPHERE,
      .poor_energy = off_by_half,
      OFFERS(on_sphere)},
+    {.target = "conformal",
+     .place = "disk",
+     .takes = HasBoundary,
+     .create_domain = CreateDisk,
+     .sum = EqmSumDirichlet,
+     .starts = EQM_STARTS_PLANE,
+     OFFERS(conformal_in_disk)},
 };
 enum { NUM_PROBLEMS = sizeof(problems) / sizeof(problems[0]) };
 

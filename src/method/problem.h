@@ -11,7 +11,7 @@ typedef struct {
   const EqmMethod *method;
   const char *start; /* its first map unless -start names one */
   PetscInt max_it;
-  PetscReal energy_rtol, ratio_tol;
+  PetscReal energy_rtol, ratio_tol, gradient_tol;
 } EqmOffer;
 
 /* Which first maps there are to choose from. */
@@ -46,5 +46,7 @@ PETSC_INTERN PetscErrorCode EqmProblemAskOptions(EqmSolver solver, PetscOptionIt
 
 /* Totals of the areas or volumes: the normalised authalic or isovolumetric energy. Collective. */
 PETSC_INTERN PetscErrorCode EqmSumMeasures(EqmSolver solver);
+/* The same, but the energy is Dirichlet's, 1/2 tr f^T L f with the mesh's cotangents. Collective. */
+PETSC_INTERN PetscErrorCode EqmSumDirichlet(EqmSolver solver);
 
 #endif

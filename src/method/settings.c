@@ -10,7 +10,7 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
                             .start_steps = -1,
                             .energy_rtol = -1.,
                             .ratio_tol = -1.,
-                            .gradient_tol = 0.,
+                            .gradient_tol = -1.,
                             .balance = -1.,
                             .stagnation = 5,
                             .ncg_guard = PETSC_TRUE,
@@ -62,8 +62,10 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
                        "EqmSolverSetFromOptions", set->ratio_tol, &set->ratio_tol, NULL));
   PetscCall(PetscOptionsReal("-energy_target", "converged when the energy is no larger than this (0: off)",
                              "EqmSolverSetFromOptions", set->energy_target, &set->energy_target, NULL));
-  PetscCall(PetscOptionsReal("-gradient_tol", "converged when the gradient's norm is no larger than this",
-                             "EqmSolverSetFromOptions", set->gradient_tol, &set->gradient_tol, NULL));
+  PetscCall(
+      PetscOptionsReal("-gradient_tol",
+                       "converged when the gradient's norm is no larger than this (-1: the method's own, 0: never)",
+                       "EqmSolverSetFromOptions", set->gradient_tol, &set->gradient_tol, NULL));
   PetscCall(PetscOptionsReal("-wall_time",
                              "stop after so many seconds since the program's start, map written (0: no limit)",
                              "EqmSolverSetFromOptions", set->wall_time, &set->wall_time, NULL));
@@ -87,6 +89,7 @@ static PetscErrorCode TakeOffer(EqmSolver solver, const EqmOffer *offer)
   if (set->max_it < 0) set->max_it = offer->max_it;
   if (set->ratio_tol < 0.) set->ratio_tol = set->energy_rtol == 0. ? 0. : offer->ratio_tol;
   if (set->energy_rtol < 0.) set->energy_rtol = offer->energy_rtol;
+  if (set->gradient_tol < 0.) set->gradient_tol = offer->gradient_tol;
   PetscFunctionReturn(0);
 }
 

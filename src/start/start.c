@@ -13,6 +13,7 @@ struct StartRow {
   PetscInt steps; /* fixed-point steps unless -start_steps says otherwise */
 };
 
+static PetscErrorCode StartBoundary(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartInPlane(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartOnSphere(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartDescending(EqmSolver, const StartRow *, PetscInt);
@@ -26,6 +27,8 @@ static const StartRow starts[] = {
      EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 0},
     {"guarded", "tutte, then fixed-point steps that stop short of the first fold", EQM_STARTS_PLANE, StartInPlane,
      EQM_LAPLACIAN_UNIFORM, PETSC_TRUE, 5},
+    {"arc-length", "boundary by arc length alone, for methods that put the interior in its place themselves",
+     EQM_STARTS_PLANE, StartBoundary, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"linear", "Laplacian linearisation: one triangle pinned, the rest conformal", EQM_STARTS_SPHERE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"fixed-point", "linear, then fixed-point steps (001 Algorithm 2)", EQM_STARTS_SPHERE, StartOnSphere,
@@ -121,6 +124,15 @@ static PetscErrorCode FixedPointStep(EqmSolver solver, PetscBool guarded, PetscR
     for (PetscInt k = 0; k < n; k++) to->x[k] = solver->place.x[k] + step * to->x[k];
   }
   PetscCall(EqmPlaceCopy(solver->domain, to, &solver->place));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartBoundary(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  (void)row;
+  (void)steps;
+  PetscFunctionBegin;
+  PetscCall(EqmDomainPlaceBoundary(solver->domain, &solver->place));
   PetscFunctionReturn(0);
 }
 

@@ -166,8 +166,9 @@ static PetscErrorCode TestKnownMaps(void)
 
   PetscFunctionBegin;
   PetscCall(CapError(700, PETSC_TRUE, &flat_error, &flat));
-  CHECK(flat_error < 1e-8, "a flat disk moved by %g", (double)flat_error);
-  CHECK(flat.angle_error.max < 1e-5 && flat.folds == 0, "angles of a flat disk changed by up to %g degrees",
+  /* but for the Moebius map that brings the mesh's mass centre, not quite at the pole, to the disk's */
+  CHECK(flat_error < 1e-4, "a flat disk moved by %g", (double)flat_error);
+  CHECK(flat.angle_error.max < 1e-3 && flat.folds == 0, "angles of a flat disk changed by up to %g degrees",
         (double)flat.angle_error.max);
   PetscCall(CapError(700, PETSC_FALSE, &coarse_error, &coarse));
   PetscCall(CapError(2800, PETSC_FALSE, &fine_error, &fine));
