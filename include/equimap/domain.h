@@ -91,6 +91,20 @@ PETSC_EXTERN PetscErrorCode EqmDomainCurvature(EqmDomain domain, const EqmPlace 
 /* Are the boundary vertices in their order along the boundary, strictly, and winding once? Always where the boundary is
    no curve. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place, PetscBool *in_order);
+/* ---- Mobius maps of the sphere (src/domain/moebius.c); they choose new frames */
+/* x -> (1 - |c|^2) (x + c) / |x + c|^2 + c for |c| < 1: conformal, pulls everything towards c / |c|. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmPlaceShift(EqmDomain domain, const PetscReal c[3], EqmPlace *place);
+/* x -> (x - center) / |x - center| for owned vertices, ghosts from their owners (004 Algorithm 5.1, lines 10 and 18):
+   no Mobius map. A vertex at the centre goes to the north pole. Collective. */
+PETSC_EXTERN PetscErrorCode EqmPlaceOntoSphere(EqmDomain domain, const PetscReal center[3], EqmPlace *place);
+/* sum m_v x_v over all vertices; `mass` per owned vertex. Collective. */
+PETSC_EXTERN PetscErrorCode EqmPlaceMassCenter(EqmDomain domain, const PetscReal *mass, const EqmPlace *place,
+                                               PetscReal center[3]);
+/* The Mobius map, unique up to rotations, that brings the mass centre (004 Definition 2.3, (41)) to the sphere's:
+   Newton steps, which one projection of f - c is not and leaves 1e-4. `mass` per owned vertex, adding up to one;
+   `offset`: what is left of the centre's distance, rounding unless half of the mass is in one spot. Collective. */
+PETSC_EXTERN PetscErrorCode EqmPlaceCenter(EqmDomain domain, const PetscReal *mass, EqmPlace *place, PetscReal *offset);
+
 /* The frame of local vertex v at `place`: column k of the dim x count matrix is frame[dim k .. dim k + dim - 1]. */
 PETSC_EXTERN PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, PetscReal frame[9]);
 

@@ -56,6 +56,9 @@ PETSC_EXTERN PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMes
 PETSC_EXTERN PetscErrorCode EqmMeshDestroy(EqmMesh *mesh);
 /* Fill the ghosts of an array with `width` reals per local vertex from their owners. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMeshUpdateGhosts(EqmMesh mesh, PetscInt width, PetscReal *array);
+/* Lumped weights: to each owned vertex its share of the weights of the cells around it; they add up to one over all
+   ranks. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmMeshVertexWeights(EqmMesh mesh, PetscReal *weights);
 /* Order the one boundary loop of a disk-type surface: for every local vertex on it, position in the loop (0 for the
    vertex of the lowest input number, then along the boundary's direction) and arc length from there, in [0, 1); -1
    elsewhere. Arrays of num_local. Collective. */

@@ -142,7 +142,9 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   if (solver->domain->curved_image && !(solver->totals.energy < before)) {
     PetscCall(EqmPlaceCopy(solver->domain, &fp->to, &solver->place));
     PetscCall(EqmSolverLook(solver));
-    *outcome = EQM_STEP_STALLED;
+    PetscCall(PetscStrncpy(solver->message, "the next fixed-point step would raise the energy: there the iteration ends",
+                           sizeof(solver->message)));
+    *outcome = EQM_STEP_CONVERGED;
   }
   solver->step_length = 1.;
   solver->objective = solver->totals.energy;

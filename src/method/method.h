@@ -27,7 +27,7 @@ typedef struct {
   PetscInt max_it, max_factorizations, start_steps;
   PetscReal energy_rtol, ratio_tol, energy_target, gradient_tol, wall_time, balance;
   PetscInt stagnation; /* iterations over which energy_rtol is looked at */
-  PetscBool quiet, has_corners;
+  PetscBool quiet, has_corners, center_start;
   PetscInt corners[4];
   /* ncg */
   PetscInt ncg_refresh;
@@ -120,6 +120,11 @@ PETSC_INTERN PetscErrorCode EqmStart(EqmSolver solver);
 /* Laplacian linearisation (001 section 6): one triangle pinned in the plane, the rest harmonic, onto the sphere.
  * Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereLinear(EqmSolver solver);
+/* Tutte's map by two hemispheres (004 section 5.1), with equal weights; may fold along the equator. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereTutte(EqmSolver solver);
+/* The Gauss map (004 Definition 5.1); with `steps` > 0 smoothed by as many steps of heat flow as it takes to lose its
+ * folds, `steps` at most, and unfolded. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereGauss(EqmSolver solver, PetscInt steps);
 /* One step of 001 Algorithm 2 with inversion radius 1.2 around the pole that `step` (counted from 0) has its turn.
  * Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscReal *weights);

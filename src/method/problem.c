@@ -41,6 +41,17 @@ static PetscErrorCode AskCorners(EqmSolver solver, PetscOptionItems *PetscOption
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode AskCenter(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  EqmSettings *const set = &solver->settings;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsBool("-start_center",
+                             "after the first map the Mobius map that brings its mass centre to the sphere's",
+                             "EqmSolverSetFromOptions", set->center_start, &set->center_start, NULL));
+  PetscFunctionReturn(0);
+}
+
 /* ---- energies */
 PetscErrorCode EqmSumMeasures(EqmSolver solver)
 {
@@ -118,6 +129,7 @@ static const EqmProblem problems[] = {
      OFFERS(in_plane)},
     {.target = "sphere",
      .place = "sphere",
+     .options = AskCenter,
      .create_domain = CreateSphere,
      .sum = EqmSumMeasures,
      .unfold = EqmSphereUnfold,

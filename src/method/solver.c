@@ -77,6 +77,20 @@ static PetscBool Stagnates(EqmSolver solver)
                      then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
 }
 
+/* The method has come to its end, but the map may be none of equal areas. */
+static PetscErrorCode DoubtStandstill(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  if (solver->problem->poor_energy == 0. ||
+      solver->totals.energy <= solver->problem->poor_energy * solver->totals.total)
+    PetscFunctionReturn(0);
+  solver->status = EQM_STATUS_NOT_CONVERGED;
+  PetscCall(PetscStrlcat(solver->message,
+                         ", far from equal areas: the target may not suit the mesh (corners? slivers?)",
+                         sizeof(solver->message)));
+  PetscFunctionReturn(0);
+}
+
 /* Is there reason to stop? Says which in status and message. The clock is rank 0's, so that all ranks agree. */
 static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
 {
@@ -103,13 +117,7 @@ static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
                             "the objective fell by less than %g %% per iteration over the last %" PetscInt_FMT
                             " iterations",
                             100. * (double)set->energy_rtol, set->stagnation));
-    if (solver->problem->poor_energy > 0. &&
-        solver->totals.energy > solver->problem->poor_energy * solver->totals.total) {
-      solver->status = EQM_STATUS_NOT_CONVERGED;
-      PetscCall(PetscStrlcat(solver->message,
-                             ", far from equal areas: the target may not suit the mesh (corners? slivers?)",
-                             sizeof(solver->message)));
-    }
+    PetscCall(DoubtStandstill(solver));
   } else {
     solver->status = EQM_STATUS_NOT_CONVERGED;
     if (solver->iteration >= set->max_it) {
@@ -141,8 +149,10 @@ static PetscErrorCode Iterate(EqmSolver solver)
     PetscCall(solver->method->step(solver, &outcome));
     if (outcome == EQM_STEP_CONVERGED) {
       solver->status = EQM_STATUS_CONVERGED;
-      PetscCall(PetscStrncpy(solver->message, "the next step would change the objective by rounding only",
-                             sizeof(solver->message)));
+      if (!solver->message[0])
+        PetscCall(PetscStrncpy(solver->message, "the next step would change the objective by rounding only",
+                               sizeof(solver->message)));
+      PetscCall(DoubtStandstill(solver));
       break;
     }
     if (outcome == EQM_STEP_STALLED) {

@@ -17,6 +17,8 @@ static PetscErrorCode StartBoundary(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartInPlane(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartOnSphere(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartDescending(EqmSolver, const StartRow *, PetscInt);
+static PetscErrorCode StartGauss(EqmSolver, const StartRow *, PetscInt);
+static PetscErrorCode StartTutteOnSphere(EqmSolver, const StartRow *, PetscInt);
 
 static const StartRow starts[] = {
     {"harmonic", "boundary by arc length, interior by cotangent weights", EQM_STARTS_PLANE, StartInPlane,
@@ -37,6 +39,12 @@ static const StartRow starts[] = {
      EQM_STARTS_SPHERE, StartDescending, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 7},
     {"guarded", "linear, with fixed-point steps and unfolding where it folds", EQM_STARTS_SPHERE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 15},
+    {"normals", "vertex normals (004 Definition 5.1): folds wherever the surface is hollow", EQM_STARTS_SPHERE,
+     StartGauss, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
+    {"gauss", "normals, smoothed by heat flow for as long as they fold, and unfolding", EQM_STARTS_SPHERE, StartGauss,
+     EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 20},
+    {"tutte", "two hemispheres, each by equal weights, and unfolding (004 section 5.1)", EQM_STARTS_SPHERE,
+     StartTutteOnSphere, EQM_LAPLACIAN_UNIFORM, PETSC_FALSE, 0},
 };
 enum { NUM_STARTS = sizeof(starts) / sizeof(starts[0]) };
 
@@ -229,6 +237,40 @@ static PetscErrorCode StartDescending(EqmSolver solver, const StartRow *row, Pet
   PetscFunctionReturn(0);
 }
 
+/* The steps are those of the smoothing. */
+static PetscErrorCode StartGauss(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSphereGauss(solver, steps));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartTutteOnSphere(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  PetscReal *weights;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
+  PetscCall(EqmSphereTutte(solver));
+  for (PetscInt k = 0; k < steps; k++) PetscCall(EqmSphereFixedPointStep(solver, k, weights));
+  PetscCall(EqmSphereUnfold(solver, &solver->unfolded_from, &solver->unfolded_to));
+  PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
+
+/* Bring the mass centre of a first map to the sphere's. */
+static PetscErrorCode CenterStart(EqmSolver solver)
+{
+  PetscReal *mass, offset;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(solver->mesh->num_owned, &mass));
+  PetscCall(EqmMeshVertexWeights(solver->mesh, mass));
+  PetscCall(EqmPlaceCenter(solver->domain, mass, &solver->place, &offset));
+  PetscCall(PetscFree(mass));
+  PetscFunctionReturn(0);
+}
+
 /* Compute the first map that the settings ask for. Collective. */
 PetscErrorCode EqmStart(EqmSolver solver)
 {
@@ -238,5 +280,6 @@ PetscErrorCode EqmStart(EqmSolver solver)
   PetscCall(FindRow(solver->problem, solver->settings.start, &row));
   PetscCall(row->run(solver, row, solver->settings.start_steps >= 0 ? solver->settings.start_steps : row->steps));
   PetscCall(EqmPlaceMakeFrames(solver->domain, &solver->place));
+  if (solver->settings.center_start) PetscCall(CenterStart(solver));
   PetscFunctionReturn(0);
 }

@@ -189,7 +189,7 @@ int main(int argc, char **argv)
   PetscCall(TestInvariance("head", "-method lm -max_it 10 -energy_rtol 0"));
 
   PetscCall(TestUsage("-balance .01"));
-  PetscCall(TestUsage("-start tutte"));
+  PetscCall(TestUsage("-start harmonic"));
   PetscCall(TestOpen());
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);

@@ -1,0 +1,143 @@
+/* First maps to the sphere: without folds on shapes of increasing difficulty, the same on any number of ranks, and what
+   they are by definition where that is known. */
+#include "support/testing.h"
+#include "energy/kernel.h"
+#include <string.h>
+
+static PetscErrorCode Start(TestMesh *test, const char *options, EqmSolver *solver)
+{
+  char text[256];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(text, sizeof(text), "-method rgd -max_it 0 %s", options));
+  PetscCall(TestSolve(test->mesh, "sphere", text, solver));
+  for (PetscInt v = 0; v < test->mesh->num_local; v++) {
+    const PetscReal *const x = (*solver)->place.x + 3 * v;
+    CHECK_CLOSE(EqmDot3(x, x), 1., 1e-15, 1.);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestUnfolded(const char *shape, PetscInt n, const char *options)
+{
+  TestMesh test;
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 2, &test));
+  PetscCall(Start(&test, options, &solver));
+  CHECK(solver->totals.folds == 0, "%s %s: %d folds", shape, options, (int)solver->totals.folds);
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* On the sphere itself normals are places, nearly. Turned inside out, the triangles keep their sense on the image. */
+static PetscErrorCode TestNormals(PetscBool inside_out)
+{
+  TestMesh test;
+  EqmSoup soup;
+  EqmSolver solver;
+  PetscReal farthest = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "sphere", 1200, 2, &soup));
+  for (PetscInt c = 0; c < soup->cell_end - soup->cell_start && inside_out; c++) {
+    PetscInt *const v = soup->cells + 3 * c, first = v[0];
+    v[0] = v[1];
+    v[1] = first;
+  }
+  PetscCall(TestMeshFromSoup(soup, &test));
+  PetscCall(Start(&test, "-start normals", &solver));
+  CHECK(solver->totals.folds == 0, "%d folds", (int)solver->totals.folds);
+  for (PetscInt k = 0; k < 3 * test.mesh->num_local; k++) {
+    const PetscReal x = (inside_out ? -1. : 1.) * solver->place.x[k];
+    farthest = PetscMax(farthest, PetscAbsReal(x - test.mesh->position[k]));
+  }
+  CHECK(farthest < .06, "a normal is %g away from the place on the sphere", (double)farthest);
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* The mesh on all ranks together and on each alone. */
+static PetscErrorCode TestRanks(const char *options)
+{
+  TestMesh test[2];
+  EqmSolver solver;
+  EqmMap map[2];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 2; k++) {
+    PetscCall(TestMeshCreate(k ? PETSC_COMM_WORLD : PETSC_COMM_SELF, "head", 500, 1, &test[k]));
+    PetscCall(Start(&test[k], options, &solver));
+    PetscCall(EqmSolverGetMap(solver, test[k].soup, &map[k]));
+    PetscCall(EqmSolverDestroy(&solver));
+  }
+  const PetscInt first = map[1]->soup->vertex_start;
+  for (PetscInt k = 0; k < 3 * (map[1]->soup->vertex_end - first); k++)
+    CHECK_CLOSE(map[1]->coordinates[k], map[0]->coordinates[3 * first + k], 1e-9, 1.);
+  for (int k = 0; k < 2; k++) {
+    PetscCall(EqmMapDestroy(&map[k]));
+    PetscCall(TestMeshDestroy(&test[k]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* -start_center leaves no mass centre. */
+static PetscErrorCode TestCentered(const char *start)
+{
+  TestMesh test;
+  EqmSolver solver;
+  PetscReal *mass, center[3];
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "head", 500, 1, &test));
+  PetscCall(Start(&test, start, &solver));
+  PetscCall(PetscMalloc1(test.mesh->num_owned, &mass));
+  PetscCall(EqmMeshVertexWeights(test.mesh, mass));
+  PetscCall(EqmPlaceMassCenter(solver->domain, mass, &solver->place, center));
+  CHECK(EqmDot3(center, center) < 1e-24, "the mass centre is off by %g",
+        (double)PetscSqrtReal(EqmDot3(center, center)));
+  PetscCall(PetscFree(mass));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* The iteration's own end, where the energy would rise, is success and says so (001 Algorithm 2). */
+static PetscErrorCode TestFixedPointEnds(void)
+{
+  TestMesh test;
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "head", 700, 1, &test));
+  PetscCall(TestSolve(test.mesh, "sphere", "-method fixed-point -energy_rtol 0", &solver));
+  CHECK(solver->status == EQM_STATUS_CONVERGED && solver->iteration < 100, "status %d after %d iterations: %s",
+        (int)solver->status, (int)solver->iteration, solver->message);
+  CHECK(strstr(solver->message, "raise the energy"), "%s", solver->message);
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestNormals(PETSC_FALSE));
+  PetscCall(TestNormals(PETSC_TRUE));
+  PetscCall(TestUnfolded("head", 900, "-start gauss"));
+  PetscCall(TestUnfolded("sphere", 900, "-start tutte"));
+  PetscCall(TestUnfolded("head", 900, "-start tutte"));
+  PetscCall(TestUnfolded("starfish", 900, "-start tutte"));
+  PetscCall(TestUnfolded("head", 900, "-start tutte -start_steps 2"));
+  PetscCall(TestRanks("-start gauss"));
+  PetscCall(TestRanks("-start tutte"));
+  PetscCall(TestCentered("-start tutte -start_center"));
+  PetscCall(TestCentered("-start linear -start_center"));
+  PetscCall(TestFixedPointEnds());
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(0);
+}
