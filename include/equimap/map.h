@@ -9,15 +9,19 @@ typedef struct {
   PetscReal mean, sd, min, max, p25, p50, p75, p95;
 } EqmStatistics;
 
+/* Bins of the histogram of angle errors, a quarter of a degree each. */
+enum { EQM_NUM_ANGLE_BINS = 720 };
+
 /* Distortion as the papers measure it (unweighted over cells unless said otherwise). */
 typedef struct {
-  PetscReal energy;          /* normalised authalic / isovolumetric energy A sum (w/W) (r - 1)^2 */
-  PetscReal image_measure;   /* A */
-  PetscReal mesh_measure;    /* W, density included */
-  EqmStatistics ratio;       /* r = (a/w) (W/A) */
-  EqmStatistics ratio_error; /* |r - 1| */
-  EqmStatistics angle_error; /* degrees per corner; p50 is the median; triangles only */
-  PetscReal quasiconformal_mean, quasiconformal_max; /* ratio of singular values, >= 1; triangles only */
+  PetscReal energy;                               /* normalised authalic / isovolumetric energy A sum (w/W) (r - 1)^2 */
+  PetscReal image_measure;                        /* A */
+  PetscReal mesh_measure;                         /* W, density included */
+  EqmStatistics ratio;                            /* r = (a/w) (W/A) */
+  EqmStatistics ratio_error;                      /* |r - 1| */
+  EqmStatistics angle_error;                      /* degrees per corner; p50 is the median; triangles only */
+  PetscInt64 angle_histogram[EQM_NUM_ANGLE_BINS]; /* corners whose angle error lies in the bin; triangles only */
+  EqmStatistics quasiconformal;                   /* ratio of singular values, >= 1; triangles only */
   PetscInt64 folds;
 } EqmDistortion;
 
@@ -35,11 +39,14 @@ typedef struct {
 
 typedef struct _p_EqmMap *EqmMap;
 struct _p_EqmMap {
-  EqmSoup soup;            /* the input mesh; referenced, not owned */
-  PetscInt dim;            /* coordinates per vertex: 2 or 3 */
-  PetscReal *coordinates;  /* dim * slab of vertices */
-  PetscReal *cell_ratio;   /* r per cell of the slab */
-  PetscReal *vertex_ratio; /* mean of r over the cells around a vertex, weighted by w; per vertex of the slab */
+  EqmSoup soup;                /* the input mesh; referenced, not owned */
+  PetscInt dim;                /* coordinates per vertex: 2 or 3 */
+  PetscReal *coordinates;      /* dim * slab of vertices */
+  PetscReal *cell_ratio;       /* r per cell of the slab */
+  PetscReal *vertex_ratio;     /* mean of r over the cells around a vertex, weighted by w; per vertex of the slab */
+  PetscReal *quasi_conformal;  /* ratio of singular values per cell of the slab; triangles only */
+  PetscReal *conformal_factor; /* log (share of the image's area / share of the surface's) of the cells around a vertex,
+                                  per vertex of the slab; triangles only */
   EqmDistortion distortion;
   PetscReal energy_initial, energy_final;
   PetscInt iterations, num_history;
@@ -79,5 +86,7 @@ PETSC_EXTERN PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *m
 /* The summary as JSON (INTERFACE.md's keys) and the history as CSV. Collective; rank 0 writes. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteSummary(EqmMap map, const char *file);
 PETSC_EXTERN PetscErrorCode EqmMapWriteHistory(EqmMap map, const char *file);
+/* The histogram of angle errors as CSV: from, to (degrees), corners. Collective; rank 0 writes. */
+PETSC_EXTERN PetscErrorCode EqmMapWriteHistogram(EqmMap map, const char *file);
 
 #endif

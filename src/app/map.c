@@ -4,8 +4,8 @@
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
-      density[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary, has_history, has_density;
+      density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN];
+  PetscBool has_output, has_summary, has_history, has_density, has_histogram;
   EqmInputOptions input;
   PetscInt hessian_eigenvalues;
 } MapOptions;
@@ -24,6 +24,8 @@ static PetscErrorCode AskOptions(MapOptions *options)
                                sizeof(options->summary), &options->has_summary));
   PetscCall(PetscOptionsString("-history", "write a row per iteration as CSV", NULL, "", options->history,
                                sizeof(options->history), &options->has_history));
+  PetscCall(PetscOptionsString("-histogram", "write the histogram of angle errors as CSV", NULL, "", options->histogram,
+                               sizeof(options->histogram), &options->has_histogram));
   PetscCall(PetscOptionsString(
       "-density",
       "a positive weight per cell (CSV with a header, or /cell/density of an HDF5 file): keep mass instead of area",
@@ -68,6 +70,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOption
   PetscCall(EqmCheckOutput(line->argument[0], options->output));
   if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[0], options->summary));
   if (options->has_history) PetscCall(EqmCheckOutput(line->argument[0], options->history));
+  if (options->has_histogram) PetscCall(EqmCheckOutput(line->argument[0], options->histogram));
   PetscFunctionReturn(0);
 }
 
@@ -88,6 +91,7 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
   PetscCall(EqmMapWrite(map, options->output));
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
+  if (options->has_histogram) PetscCall(EqmMapWriteHistogram(map, options->histogram));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
   PetscCall(CloseBooks(ledger, map));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));

@@ -1,6 +1,10 @@
 /* equimap measure MESH MAP: distortion and folds of any map of the mesh. */
 #include "app.h"
 
+typedef struct {
+  char density[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN];
+} MeasureOptions;
+
 static PetscErrorCode PrintStatistics(const char *name, const EqmStatistics *s)
 {
   PetscFunctionBegin;
@@ -22,8 +26,7 @@ static PetscErrorCode Print(const EqmDistortion *d, PetscBool surface)
   PetscCall(PrintStatistics("|ratio - 1|", &d->ratio_error));
   if (!surface) PetscFunctionReturn(0);
   PetscCall(PrintStatistics("angle error", &d->angle_error));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  quasi-conformal distortion: mean %.6g  max %.6g\n",
-                        (double)d->quasiconformal_mean, (double)d->quasiconformal_max));
+  PetscCall(PrintStatistics("quasiconformal", &d->quasiconformal));
   PetscFunctionReturn(0);
 }
 
@@ -47,7 +50,7 @@ static PetscErrorCode CheckMeasurable(EqmSoup soup)
 }
 
 /* Measure and report; the map's status: folds or fine. */
-static PetscErrorCode Measure(const EqmCommandLine *line, const char *density, const char *summary, EqmStatus *status)
+static PetscErrorCode Measure(const EqmCommandLine *line, const MeasureOptions *options, EqmStatus *status)
 {
   EqmLedger ledger;
   EqmSoup soup;
@@ -58,7 +61,7 @@ static PetscErrorCode Measure(const EqmCommandLine *line, const char *density, c
   PetscFunctionBegin;
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
-  if (density[0]) PetscCall(EqmSoupReadDensity(soup, density));
+  if (options->density[0]) PetscCall(EqmSoupReadDensity(soup, options->density));
   PetscCall(CheckMeasurable(soup));
   PetscCall(EqmMapRead(soup, line->argument[1], &map));
   PetscCall(EqmMeshCreate(soup, ledger, &mesh));
@@ -72,7 +75,8 @@ static PetscErrorCode Measure(const EqmCommandLine *line, const char *density, c
   PetscCall(PetscStrncpy(map->command, "measure", sizeof(map->command)));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s as a map of %s\n", line->argument[1], line->argument[0]));
   PetscCall(Print(&map->distortion, (PetscBool)(soup->cell_size == 3)));
-  if (summary[0]) PetscCall(EqmMapWriteSummary(map, summary));
+  if (options->summary[0]) PetscCall(EqmMapWriteSummary(map, options->summary));
+  if (options->histogram[0]) PetscCall(EqmMapWriteHistogram(map, options->histogram));
   PetscCall(EqmMapDestroy(&map));
   PetscCall(EqmMeshDestroy(&mesh));
   PetscCall(EqmSoupDestroy(&soup));
@@ -82,13 +86,16 @@ static PetscErrorCode Measure(const EqmCommandLine *line, const char *density, c
 
 PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status)
 {
-  char density[PETSC_MAX_PATH_LEN] = "", summary[PETSC_MAX_PATH_LEN] = "";
+  MeasureOptions options = {.density = ""};
 
   PetscFunctionBegin;
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
   PetscCall(PetscOptionsString("-density", "a positive weight per cell: measure mass instead of area", NULL, "",
-                               density, sizeof(density), NULL));
-  PetscCall(PetscOptionsString("-summary", "write the figures as JSON", NULL, "", summary, sizeof(summary), NULL));
+                               options.density, sizeof(options.density), NULL));
+  PetscCall(PetscOptionsString("-summary", "write the figures as JSON", NULL, "", options.summary,
+                               sizeof(options.summary), NULL));
+  PetscCall(PetscOptionsString("-histogram", "write the histogram of angle errors as CSV", NULL, "", options.histogram,
+                               sizeof(options.histogram), NULL));
   PetscOptionsEnd();
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
@@ -96,6 +103,6 @@ PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
             "measure wants a mesh and a map, %d given; usage: equimap measure MESH MAP", line->num_arguments);
   }
-  PetscCall(Measure(line, density, summary, status));
+  PetscCall(Measure(line, &options, status));
   PetscFunctionReturn(0);
 }

@@ -43,6 +43,6 @@ PetscErrorCode EqmCheckOutput(const char *mesh, const char *files)
   for (int k = 0; k < count && rank == 0 && !error; k++) error = Probe(mesh, names[k], message, sizeof(message));
   PetscCall(PetscStrToArrayDestroy(count, names));
   PetscCall(EqmAgree(PETSC_COMM_WORLD, error, message));
-  if (!count) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-o, -summary and -history want the name of a file");
+  if (!count) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-o, -summary, -history and -histogram want the name of a file");
   PetscFunctionReturn(0);
 }

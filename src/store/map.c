@@ -22,6 +22,8 @@ PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map)
   PetscCall(PetscCalloc1(dim * num_vertices, &new_map->coordinates));
   PetscCall(PetscCalloc1(num_cells, &new_map->cell_ratio));
   PetscCall(PetscCalloc1(num_vertices, &new_map->vertex_ratio));
+  PetscCall(PetscCalloc1(num_cells, &new_map->quasi_conformal));
+  PetscCall(PetscCalloc1(num_vertices, &new_map->conformal_factor));
   PetscCallMPI(MPI_Comm_size(soup->comm, &size));
   new_map->ranks = size;
   new_map->threads = 1;
@@ -37,6 +39,8 @@ PetscErrorCode EqmMapDestroy(EqmMap *map)
   PetscCall(PetscFree((*map)->coordinates));
   PetscCall(PetscFree((*map)->cell_ratio));
   PetscCall(PetscFree((*map)->vertex_ratio));
+  PetscCall(PetscFree((*map)->quasi_conformal));
+  PetscCall(PetscFree((*map)->conformal_factor));
   PetscCall(PetscFree((*map)->history));
   PetscCall(PetscFree((*map)->hessian_eigenvalues));
   PetscCall(PetscFree(*map));

@@ -56,10 +56,45 @@ static const struct {
                  {"angle_error_mean", offsetof(struct _p_EqmMap, distortion.angle_error.mean)},
                  {"angle_error_median", offsetof(struct _p_EqmMap, distortion.angle_error.p50)},
                  {"angle_error_max", offsetof(struct _p_EqmMap, distortion.angle_error.max)},
-                 {"quasiconformal_mean", offsetof(struct _p_EqmMap, distortion.quasiconformal_mean)},
-                 {"quasiconformal_max", offsetof(struct _p_EqmMap, distortion.quasiconformal_max)},
+                 {"angle_error_sd", offsetof(struct _p_EqmMap, distortion.angle_error.sd)},
+                 {"quasiconformal_mean", offsetof(struct _p_EqmMap, distortion.quasiconformal.mean)},
+                 {"quasiconformal_median", offsetof(struct _p_EqmMap, distortion.quasiconformal.p50)},
+                 {"quasiconformal_max", offsetof(struct _p_EqmMap, distortion.quasiconformal.max)},
                  {"seconds_total", offsetof(struct _p_EqmMap, total_seconds)}};
 #define LENGTH(table) ((int)(sizeof(table) / sizeof((table)[0])))
+
+/* And the histogram; `edges` has one entry more. */
+static EqmSlab HistogramSlab(PetscMPIInt rank, PetscInt length)
+{
+  const EqmSlab slab = {length, 0, rank == 0 ? length : 0, 0};
+  return slab;
+}
+
+/* What is known of surfaces only: angles. */
+static PetscErrorCode DeclareAngles(EqmH5 h5, EqmSoup soup)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmH5DeclareReals(h5, "/cell/quasi_conformal", soup->num_cells, 0));
+  PetscCall(EqmH5DeclareReals(h5, "/vertex/conformal_factor", soup->num_vertices, 0));
+  PetscCall(EqmH5DeclareReals(h5, "/histogram/angle_error_edges", EQM_NUM_ANGLE_BINS + 1, 0));
+  PetscCall(EqmH5DeclareIntegers(h5, "/histogram/angle_error", EQM_NUM_ANGLE_BINS, 0));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteAngles(EqmH5 h5, EqmMap map)
+{
+  PetscReal edges[EQM_NUM_ANGLE_BINS + 1];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k <= EQM_NUM_ANGLE_BINS; k++) edges[k] = k * 180. / EQM_NUM_ANGLE_BINS;
+  PetscCall(EqmH5WriteReals(h5, "/cell/quasi_conformal", CellSlab(map->soup, 0), map->quasi_conformal));
+  PetscCall(EqmH5WriteReals(h5, "/vertex/conformal_factor", VertexSlab(map->soup, 0), map->conformal_factor));
+  PetscCall(
+      EqmH5WriteReals(h5, "/histogram/angle_error_edges", HistogramSlab(h5->rank, EQM_NUM_ANGLE_BINS + 1), edges));
+  PetscCall(EqmH5WriteIntegers(h5, "/histogram/angle_error", HistogramSlab(h5->rank, EQM_NUM_ANGLE_BINS),
+                               map->distortion.angle_histogram));
+  PetscFunctionReturn(0);
+}
 
 /* The mended mesh and its map, so that nothing is lost. */
 static PetscErrorCode DeclareMended(EqmH5 h5, EqmMap mended)
@@ -84,6 +119,7 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5DeclareIntegers(h5, "/mesh/cells", soup->num_cells, soup->cell_size));
   PetscCall(EqmH5DeclareReals(h5, "/cell/ratio", soup->num_cells, 0));
   PetscCall(EqmH5DeclareReals(h5, "/vertex/ratio", soup->num_vertices, 0));
+  if (soup->cell_size == 3) PetscCall(DeclareAngles(h5, soup));
   if (soup->density) PetscCall(EqmH5DeclareReals(h5, "/cell/density", soup->num_cells, 0));
   PetscCall(EqmH5DeclareIntegers(h5, "/history/iteration", map->num_history, 0));
   for (int k = 0; k < LENGTH(history_reals); k++)
@@ -215,6 +251,7 @@ static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
   PetscCall(WriteIndices(h5, "/mesh/cells", CellSlab(soup, soup->cell_size), soup->cells));
   PetscCall(EqmH5WriteReals(h5, "/cell/ratio", CellSlab(soup, 0), map->cell_ratio));
   PetscCall(EqmH5WriteReals(h5, "/vertex/ratio", VertexSlab(soup, 0), map->vertex_ratio));
+  if (soup->cell_size == 3) PetscCall(WriteAngles(h5, map));
   if (soup->density) PetscCall(EqmH5WriteReals(h5, "/cell/density", CellSlab(soup, 0), soup->density));
   PetscCall(WriteHistory(h5, map));
   if (map->num_hessian_eigenvalues)

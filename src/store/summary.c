@@ -110,8 +110,9 @@ static void AddQuality(cJSON *root, EqmMap map)
   AddAngle(group, "sd", flat, distortion->angle_error.sd);
   AddAngle(group, "max", flat, distortion->angle_error.max);
   group = cJSON_AddObjectToObject(root, "quasiconformal");
-  AddAngle(group, "mean", flat, distortion->quasiconformal_mean);
-  AddAngle(group, "max", flat, distortion->quasiconformal_max);
+  AddAngle(group, "mean", flat, distortion->quasiconformal.mean);
+  AddAngle(group, "median", flat, distortion->quasiconformal.p50);
+  AddAngle(group, "max", flat, distortion->quasiconformal.max);
   AddCount(root, "folds", distortion->folds);
 }
 

@@ -78,6 +78,10 @@ static void Grid(Writer *writer, const char *name, EqmSoup soup, const char *poi
   Close(writer);
   Field(writer, "ratio", "Cell", "/cell/ratio", soup->num_cells);
   Field(writer, "vertex_ratio", "Node", "/vertex/ratio", soup->num_vertices);
+  if (soup->cell_size == 3) {
+    Field(writer, "quasi_conformal", "Cell", "/cell/quasi_conformal", soup->num_cells);
+    Field(writer, "conformal_factor", "Node", "/vertex/conformal_factor", soup->num_vertices);
+  }
   if (soup->density) Field(writer, "density", "Cell", "/cell/density", soup->num_cells);
   Close(writer);
 }

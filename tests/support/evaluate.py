@@ -22,6 +22,33 @@ def corner_angles(points, cells):
     return angles
 
 
+def singular_values(points, image, cells):
+    """Of the linear map of each triangle, the larger first."""
+    p, q, r = (points[cells[:, k]] for k in range(3))
+    length = numpy.linalg.norm(q - p, axis=1)
+    along = (q - p) / length[:, None]
+    first = ((r - p) * along).sum(1)
+    height = numpy.linalg.norm(r - p - first[:, None] * along, axis=1)
+    u = (image[cells[:, 1]] - image[cells[:, 0]]) / length[:, None]
+    v = (image[cells[:, 2]] - image[cells[:, 0]] - first[:, None] * u) / height[:, None]
+    return numpy.linalg.svd(numpy.stack([u, v], axis=2), compute_uv=False)
+
+
+def conformal_factor(points, image, cells):
+    """Logarithm of the share of the image's area over the share of the surface's, around each vertex."""
+    shares = numpy.zeros((2, len(points)))
+    for share, places in zip(shares, (image, points)):
+        areas = abs(triangle_areas(places, cells))
+        for k in range(3):
+            numpy.add.at(share, cells[:, k], areas / areas.sum())
+    return numpy.log(shares[0] / shares[1])
+
+
+def dirichlet_energy(points, image, cells):
+    """Half the squared singular values, integrated over the surface."""
+    return 0.5 * ((singular_values(points, image, cells) ** 2).sum(1) * triangle_areas(points, cells)).sum()
+
+
 def boundary_edges(cells):
     """Directed edges that no other triangle runs through backwards."""
     edges = numpy.concatenate([cells[:, [k, (k + 1) % 3]] for k in range(3)])

@@ -149,8 +149,8 @@ static PetscErrorCode CheckLinear(TestMesh *test, const PetscReal matrix[6], Pet
   CHECK_CLOSE(d->ratio.mean, 1., 1e-12, 1.);
   CHECK_CLOSE(d->ratio.sd, 0., 1e-12, 1.);
   CHECK_CLOSE(d->ratio_error.max, 0., 1e-11, 1.);
-  CHECK_CLOSE(d->quasiconformal_mean, quasiconformal, 1e-6, 1.); /* the square root of a difference near one */
-  CHECK_CLOSE(d->quasiconformal_max, quasiconformal, 1e-5, 1.);
+  CHECK_CLOSE(d->quasiconformal.mean, quasiconformal, 1e-6, 1.); /* the square root of a difference near one */
+  CHECK_CLOSE(d->quasiconformal.max, quasiconformal, 1e-5, 1.);
   CHECK((d->angle_error.max < 1e-9) == conformal, "angles change by %g degrees", (double)d->angle_error.max);
   for (PetscInt c = 0; c < test->soup->cell_end - test->soup->cell_start; c++)
     CHECK_CLOSE(map->cell_ratio[c], 1., 1e-11, 1.);
