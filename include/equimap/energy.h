@@ -48,6 +48,13 @@ PETSC_EXTERN PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *plac
 PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy,
                                               Vec gradient);
 
+/* The conformal energy E_D - A, E_D = 1/2 tr f^T L f for the Laplacian with `weights` (3 per local cell), plus |c|^2/2
+   of the mass centre c = sum m_v f_v unless `mass` (per owned vertex, adding up to one) is NULL; and, if wanted, its
+   gradient in degrees of freedom. `a` (per local cell) returns the image measures. Summed cell by cell, so that E_D and
+   A do not cancel as wholes. Counts one evaluation. Collective. */
+PETSC_EXTERN PetscErrorCode EqmConformalEnergy(EqmDomain domain, const PetscReal *weights, const PetscReal *mass,
+                                               const EqmPlace *place, PetscReal *a, PetscReal *energy, Vec gradient);
+
 /* Weights of a Laplacian: per local cell and edge. Edge a of a triangle is opposite its corner a; the edges of a
    tetrahedron join its corners 01, 02, 03, 12, 13, 23. */
 typedef enum {

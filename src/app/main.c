@@ -16,7 +16,7 @@ static const CommandRow commands[] = {
     {"disk", EqmCommandMap, "MESH -o OUT", "area-preserving map of a disk-type surface to the unit disk"},
     {"square", EqmCommandMap, "MESH -o OUT", "the same to the unit square"},
     {"sphere", EqmCommandMap, "MESH -o OUT", "area-preserving map of a closed genus-0 surface to the unit sphere"},
-    {"conformal", EqmCommandMap, "MESH -o OUT", "angle-preserving map of a disk-type surface to the unit disk"},
+    {"conformal", EqmCommandMap, "MESH -o OUT", "angle-preserving map: closed surface to the unit sphere, disk-type to the unit disk"},
     {"check", EqmCommandCheck, "MESH", "diagnose a mesh: what it is, what is wrong, what each command would say"},
     {"measure", EqmCommandMeasure, "MESH MAP", "distortion and folds of any map, also one made elsewhere"},
     {"convert", EqmCommandConvert, "IN OUT", "between mesh formats"},

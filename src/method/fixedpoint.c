@@ -142,7 +142,8 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   if (solver->domain->curved_image && !(solver->totals.energy < before)) {
     PetscCall(EqmPlaceCopy(solver->domain, &fp->to, &solver->place));
     PetscCall(EqmSolverLook(solver));
-    PetscCall(PetscStrncpy(solver->message, "the next fixed-point step would raise the energy: there the iteration ends",
+    PetscCall(PetscStrncpy(solver->message,
+                           "the next fixed-point step would raise the energy: there the iteration ends",
                            sizeof(solver->message)));
     *outcome = EQM_STEP_CONVERGED;
   }

@@ -1,4 +1,4 @@
-/* L-BFGS on the normalised authalic energy with the Laplacian metric as initial inverse Hessian. The frames of the
+/* L-BFGS on the objective of the problem with the Laplacian metric as initial inverse Hessian. The frames of the
    domain carry steps and gradients along: the recursion is the Euclidean one on every domain. */
 #include "method/method.h"
 #include "method/pairs.h"
@@ -26,7 +26,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(VecDuplicate(lb->gradient, &lb->direction));
   PetscCall(EqmPairsCreate(lb->gradient, solver->settings.lbfgs_memory, &lb->pairs));
   PetscCall(EqmMetricRefresh(solver, lb->metric));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, lb->gradient));
+  PetscCall(
+      solver->problem->objective->evaluate(solver, &solver->place, solver->image, &solver->objective, lb->gradient));
   PetscCall(VecNorm(lb->gradient, NORM_2, &solver->gradient_norm));
   PetscFunctionReturn(0);
 }
@@ -47,7 +48,7 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* q <- A/2 M^-1 q: near the minimum the energy's Hessian is about 2/A L_S. */
+/* q <- M^-1 q on the scale of the inverse Hessian. */
 static PetscErrorCode ApplyMetric(void *context, Vec q)
 {
   const EqmSolver solver = context;
@@ -55,7 +56,7 @@ static PetscErrorCode ApplyMetric(void *context, Vec q)
 
   PetscFunctionBegin;
   PetscCall(EqmMetricApply(solver, lb->metric, q, q));
-  PetscCall(VecScale(q, .5 * solver->domain->target_measure));
+  PetscCall(VecScale(q, solver->problem->objective->inverse_scale * solver->domain->target_measure));
   PetscFunctionReturn(0);
 }
 
@@ -68,11 +69,13 @@ static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t,
 
   PetscFunctionBegin;
   *t = 1.;
+  if (solver->problem->objective->longest_step)
+    PetscCall(solver->problem->objective->longest_step(solver, lb->direction, t));
   for (PetscInt trial = 0; trial < MOST_TRIALS; trial++) {
     PetscBool in_order;
     PetscCall(EqmDomainMove(solver->domain, &solver->place, *t, lb->direction, &lb->trial));
     PetscCall(EqmDomainBoundaryInOrder(solver->domain, &lb->trial, &in_order));
-    PetscCall(EqmAuthalicEnergy(solver->domain, &lb->trial, lb->image, energy, lb->trial_gradient));
+    PetscCall(solver->problem->objective->evaluate(solver, &lb->trial, lb->image, energy, lb->trial_gradient));
     const PetscReal change = *energy - solver->objective;
     if (in_order && change <= 1e-4 * *t * slope) PetscFunctionReturn(0);
     *t = in_order ? PetscMax(.1 * *t, PetscMin(.5 * *t, -.5 * *t * *t * slope / (change - *t * slope))) : .5 * *t;
@@ -88,7 +91,8 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   PetscReal slope, t, energy;
 
   PetscFunctionBegin;
-  if (refresh > 0 && solver->iteration > 0 && solver->iteration % refresh == 0)
+  if (refresh > 0 && !solver->problem->objective->fixed_metric && solver->iteration > 0 &&
+      solver->iteration % refresh == 0)
     PetscCall(EqmMetricRefresh(solver, lb->metric));
   PetscCall(VecCopy(lb->gradient, lb->direction));
   PetscCall(EqmPairsDirection(lb->pairs, ApplyMetric, solver, lb->direction));

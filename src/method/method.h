@@ -5,6 +5,7 @@
 #include <equimap/solver.h>
 #include "linalg/linalg.h"
 #include "method/problem.h"
+#include "method/objective.h"
 
 /* What a step came to. */
 typedef enum {
@@ -51,9 +52,10 @@ struct _p_EqmSolver {
   const EqmMethod *method;
   void *data; /* the method's own */
 
-  EqmPlace place;        /* the present map */
-  PetscReal *image;      /* its image measures, per local cell */
-  EqmImageTotals totals; /* and their sums */
+  EqmPlace place;                         /* the present map */
+  PetscReal *image;                       /* its image measures, per local cell */
+  PetscReal *angle_weights, *vertex_mass; /* of EqmAngleWeights and EqmVertexMass; NULL until the first need */
+  EqmImageTotals totals;                  /* and their sums */
   PetscInt iteration;
   PetscReal step_length, gradient_norm;
   PetscReal objective;   /* what the method minimises; convergence is judged by it */
@@ -101,11 +103,12 @@ PETSC_INTERN PetscErrorCode EqmHeldExtend(EqmSolver solver, const PetscReal *wei
 PETSC_INTERN PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const EqmPlace *from,
                                            EqmPlace *to);
 
-/* ---- the Laplacian metric (src/method/metric.c): turns gradients of the authalic energy into directions */
+/* ---- the Laplacian metric (src/method/metric.c): turns gradients of the objective into directions */
 typedef struct _p_EqmMetric *EqmMetric;
 PETSC_INTERN PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *metric);
 PETSC_INTERN PetscErrorCode EqmMetricDestroy(EqmMetric *metric);
-/* Take the stretch Laplacian of the present map. Counts a factorisation. Collective. */
+/* Take the Laplacian that suits the problem's objective at the present map; nothing to do where it is fixed and has
+   been taken. Counts a factorisation. Collective. */
 PETSC_INTERN PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric);
 /* h = M^-1 g; both in degrees of freedom at the present map; may be the same. Collective. */
 PETSC_INTERN PetscErrorCode EqmMetricApply(EqmSolver solver, EqmMetric metric, Vec g, Vec h);

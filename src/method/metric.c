@@ -1,7 +1,7 @@
-/* The stretch Laplacian as a metric for gradients. In the plane M = blkdiag(L_II, L_BB) (000 section 3.2), degree of
-   freedom by degree of freedom, angles and slides with the first coordinate. On the sphere the gradient is a field in
-   space: each coordinate is solved with L_S + .1 mass and the result projected back (docs/methods.md,
-   Published methods). */
+/* A Laplacian, of most objectives the stretch Laplacian, as a metric for gradients. In the plane M = blkdiag(L_II,
+   L_BB) (000 section 3.2), degree of freedom by degree of freedom, angles and slides with the first coordinate. On the
+   sphere the gradient is a field in space: each coordinate is solved with the Laplacian and a mass, and the result
+   projected back (docs/methods.md, Published methods). */
 #include "method/method.h"
 
 struct _p_EqmMetric {
@@ -38,15 +38,11 @@ PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
 
 PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric)
 {
-  const PetscBool sphere = solver->domain->curved_image;
+  PetscBool with_mass;
 
   PetscFunctionBegin;
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, metric->weights));
-  if (sphere) {
-    PetscCall(EqmImageMeasure(solver->domain, &solver->place, metric->mass));
-    for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) metric->mass[c] *= .1 * solver->domain->target_measure;
-  }
-  PetscCall(EqmGroupFactor(solver, metric->weights, metric->group, sphere ? metric->mass : NULL));
+  PetscCall(solver->problem->objective->metric(solver, metric->weights, metric->mass, &with_mass));
+  PetscCall(EqmGroupFactor(solver, metric->weights, metric->group, with_mass ? metric->mass : NULL));
   PetscFunctionReturn(0);
 }
 

@@ -32,7 +32,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(VecDuplicate(ncg->gradient, &ncg->trial_gradient));
   PetscCall(EqmPlaceCreate(solver->domain, &ncg->trial));
   PetscCall(EqmMetricRefresh(solver, ncg->metric));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, ncg->gradient));
+  PetscCall(
+      solver->problem->objective->evaluate(solver, &solver->place, solver->image, &solver->objective, ncg->gradient));
   PetscCall(VecNorm(ncg->gradient, NORM_2, &solver->gradient_norm));
   PetscCall(EqmMetricApply(solver, ncg->metric, ncg->gradient, ncg->preconditioned));
   PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
@@ -66,7 +67,7 @@ static PetscErrorCode TryStep(EqmSolver solver, PetscReal alpha, PetscReal *ener
 
   PetscFunctionBegin;
   PetscCall(EqmDomainMove(solver->domain, &solver->place, alpha, ncg->direction, &ncg->trial));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &ncg->trial, ncg->image, energy, NULL));
+  PetscCall(solver->problem->objective->evaluate(solver, &ncg->trial, ncg->image, energy, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -91,7 +92,7 @@ static PetscErrorCode TryGradient(EqmSolver solver, PetscReal alpha, PetscReal *
 
   PetscFunctionBegin;
   PetscCall(EqmDomainMove(solver->domain, &solver->place, alpha, ncg->direction, &ncg->trial));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &ncg->trial, ncg->image, energy, ncg->trial_gradient));
+  PetscCall(solver->problem->objective->evaluate(solver, &ncg->trial, ncg->image, energy, ncg->trial_gradient));
   PetscFunctionReturn(0);
 }
 

@@ -52,6 +52,14 @@ static PetscErrorCode AskCenter(EqmSolver solver, PetscOptionItems *PetscOptions
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode AskConformal(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  PetscFunctionBegin;
+  solver->settings.lbfgs_memory = 8; /* the method's own options ask next and show this as their default */
+  PetscCall(AskCenter(solver, PetscOptionsObject));
+  PetscFunctionReturn(0);
+}
+
 /* ---- energies */
 PetscErrorCode EqmSumMeasures(EqmSolver solver)
 {
@@ -68,14 +76,12 @@ PetscErrorCode EqmSumMeasures(EqmSolver solver)
 
 PetscErrorCode EqmSumDirichlet(EqmSolver solver)
 {
-  PetscReal *weights;
+  const PetscReal *weights;
 
   PetscFunctionBegin;
   PetscCall(EqmSumMeasures(solver));
-  PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_COTANGENT, NULL, weights));
+  PetscCall(EqmAngleWeights(solver, &weights));
   PetscCall(EqmLaplacianEnergy(solver->mesh, weights, solver->domain->dim, solver->place.x, &solver->totals.energy));
-  PetscCall(PetscFree(weights));
   PetscFunctionReturn(0);
 }
 
@@ -84,6 +90,13 @@ static PetscErrorCode HasBoundary(EqmMesh mesh, PetscBool *has)
 {
   PetscFunctionBegin;
   *has = (PetscBool)(mesh->num_boundary_vertices > 0);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode IsClosed(EqmMesh mesh, PetscBool *closed)
+{
+  PetscFunctionBegin;
+  *closed = (PetscBool)(mesh->num_boundary_vertices == 0);
   PetscFunctionReturn(0);
 }
 
@@ -104,6 +117,10 @@ static const EqmOffer conformal_in_disk[] = {
     {&EqmMethodRiemann, "arc-length", 100, 0., 0., 1e-5},
 };
 
+static const EqmOffer conformal_on_sphere[] = {
+    {&EqmMethodLbfgs, "conformal", 100, 0., 0., 1e-5},
+};
+
 #define OFFERS(list) .offers = (list), .num_offers = sizeof(list) / sizeof((list)[0])
 
 /* Ratios off by half, root mean square: that is no map of equal areas. */
@@ -113,6 +130,7 @@ static const EqmProblem problems[] = {
     {.target = "disk",
      .place = "disk",
      .create_domain = CreateDisk,
+     .objective = &EqmObjectiveAuthalic,
      .sum = EqmSumMeasures,
      .starts = EQM_STARTS_PLANE,
      .poor_energy = off_by_half,
@@ -122,6 +140,7 @@ static const EqmProblem problems[] = {
      .place = "square",
      .options = AskCorners,
      .create_domain = CreateSquare,
+     .objective = &EqmObjectiveAuthalic,
      .sum = EqmSumMeasures,
      .starts = EQM_STARTS_PLANE,
      .poor_energy = off_by_half,
@@ -131,6 +150,7 @@ static const EqmProblem problems[] = {
      .place = "sphere",
      .options = AskCenter,
      .create_domain = CreateSphere,
+     .objective = &EqmObjectiveAuthalic,
      .sum = EqmSumMeasures,
      .unfold = EqmSphereUnfold,
      .starts = EQM_STARTS_SPHERE,
@@ -143,6 +163,17 @@ static const EqmProblem problems[] = {
      .sum = EqmSumDirichlet,
      .starts = EQM_STARTS_PLANE,
      OFFERS(conformal_in_disk)},
+    {.target = "conformal",
+     .place = "sphere",
+     .takes = IsClosed,
+     .options = AskConformal,
+     .create_domain = CreateSphere,
+     .objective = &EqmObjectiveConformal,
+     .sum = EqmSumDirichlet,
+     .unfold = EqmSphereUnfold,
+     .finish = EqmConformalFinish,
+     .starts = EQM_STARTS_SPHERE,
+     OFFERS(conformal_on_sphere)},
 };
 enum { NUM_PROBLEMS = sizeof(problems) / sizeof(problems[0]) };
 

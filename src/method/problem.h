@@ -2,7 +2,7 @@
 #ifndef EQM_PROBLEM_H
 #define EQM_PROBLEM_H
 
-#include <equimap/solver.h>
+#include "method/objective.h"
 
 typedef struct EqmMethod EqmMethod;
 
@@ -23,8 +23,10 @@ typedef struct {
   PetscErrorCode (*takes)(EqmMesh, PetscBool *); /* is this the row for the mesh? NULL: yes */
   PetscErrorCode (*options)(EqmSolver, PetscOptionItems *); /* of its own; NULL: none */
   PetscErrorCode (*create_domain)(EqmSolver, EqmDomain *);
+  const EqmObjective *objective;                                              /* of the methods of descent */
   PetscErrorCode (*sum)(EqmSolver);                                           /* totals from place and image */
   PetscErrorCode (*unfold)(EqmSolver, PetscInt64 *before, PetscInt64 *after); /* mend folds; NULL: cannot */
+  PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
   EqmStartFamily starts;
   PetscReal poor_energy;   /* a stagnating map with more than this, per target measure, is no success; 0: any may be */
   PetscBool takes_balance; /* -balance has a meaning */

@@ -21,7 +21,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &rgd->image));
   PetscCall(EqmDomainCreateVec(solver->domain, &rgd->gradient));
   PetscCall(VecDuplicate(rgd->gradient, &rgd->direction));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, rgd->gradient));
+  PetscCall(
+      solver->problem->objective->evaluate(solver, &solver->place, solver->image, &solver->objective, rgd->gradient));
   PetscCall(VecNorm(rgd->gradient, NORM_2, &solver->gradient_norm));
   PetscFunctionReturn(0);
 }
@@ -47,7 +48,7 @@ static PetscErrorCode Phi(EqmSolver solver, PetscReal alpha, PetscReal *value)
 
   PetscFunctionBegin;
   PetscCall(EqmDomainMove(solver->domain, &solver->place, alpha, rgd->direction, &rgd->trial));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &rgd->trial, rgd->image, &energy, NULL));
+  PetscCall(solver->problem->objective->evaluate(solver, &rgd->trial, rgd->image, &energy, NULL));
   *value = energy - solver->objective;
   PetscFunctionReturn(0);
 }
@@ -151,7 +152,8 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   *outcome = EQM_STEP_STALLED;
   if (alpha == 0.) PetscFunctionReturn(0);
   PetscCall(EqmDomainMove(solver->domain, &solver->place, alpha, rgd->direction, &solver->place));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, solver->image, &solver->objective, rgd->gradient));
+  PetscCall(
+      solver->problem->objective->evaluate(solver, &solver->place, solver->image, &solver->objective, rgd->gradient));
   PetscCall(EqmSolverSum(solver));
   PetscCall(VecNorm(rgd->gradient, NORM_2, &solver->gradient_norm));
   solver->step_length = alpha;

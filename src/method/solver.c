@@ -27,6 +27,8 @@ PetscErrorCode EqmSolverDestroy(EqmSolver *solver)
   PetscCall(PetscFree(s->scalar_count));
   PetscCall(EqmPlaceDestroy(&s->place));
   PetscCall(PetscFree(s->image));
+  PetscCall(PetscFree(s->angle_weights));
+  PetscCall(PetscFree(s->vertex_mass));
   PetscCall(PetscFree(s->objectives));
   PetscCall(PetscFree(s->history));
   PetscCall(EqmDomainDestroy(&s->domain));
@@ -181,6 +183,7 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
   PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   PetscCall(Iterate(solver));
   PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  if (solver->problem->finish) PetscCall(solver->problem->finish(solver));
   if (solver->problem->unfold && solver->totals.folds > 0) {
     PetscCall(solver->problem->unfold(solver, &solver->unfolded_from, &solver->unfolded_to));
     PetscCall(EqmSolverLook(solver));

@@ -17,6 +17,7 @@ static PetscErrorCode StartBoundary(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartInPlane(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartOnSphere(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartDescending(EqmSolver, const StartRow *, PetscInt);
+static PetscErrorCode StartConformal(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartGauss(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartTutteOnSphere(EqmSolver, const StartRow *, PetscInt);
 
@@ -39,6 +40,8 @@ static const StartRow starts[] = {
      EQM_STARTS_SPHERE, StartDescending, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 7},
     {"guarded", "linear, with fixed-point steps and unfolding where it folds", EQM_STARTS_SPHERE, StartOnSphere,
      EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 15},
+    {"conformal", "linear, then the Mobius map that brings its mass centre to the sphere's", EQM_STARTS_SPHERE,
+     StartConformal, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"normals", "vertex normals (004 Definition 5.1): folds wherever the surface is hollow", EQM_STARTS_SPHERE,
      StartGauss, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"gauss", "normals, smoothed by heat flow for as long as they fold, and unfolding", EQM_STARTS_SPHERE, StartGauss,
@@ -261,13 +264,20 @@ static PetscErrorCode StartTutteOnSphere(EqmSolver solver, const StartRow *row, 
 /* Bring the mass centre of a first map to the sphere's. */
 static PetscErrorCode CenterStart(EqmSolver solver)
 {
-  PetscReal *mass, offset;
+  const PetscReal *mass;
+  PetscReal offset;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(solver->mesh->num_owned, &mass));
-  PetscCall(EqmMeshVertexWeights(solver->mesh, mass));
+  PetscCall(EqmVertexMass(solver, &mass));
   PetscCall(EqmPlaceCenter(solver->domain, mass, &solver->place, &offset));
-  PetscCall(PetscFree(mass));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartConformal(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSphereLinear(solver));
+  PetscCall(CenterStart(solver));
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,26 @@
+/* The objectives of the area-preserving maps. */
+#include "method/method.h"
+
+static PetscErrorCode Evaluate(EqmSolver solver, const EqmPlace *place, PetscReal *image, PetscReal *value,
+                               Vec gradient)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmAuthalicEnergy(solver->domain, place, image, value, gradient));
+  PetscFunctionReturn(0);
+}
+
+/* Near the minimum the Hessian is about 2/A L_S; on the sphere a tenth of the image's mass keeps the metric definite.
+ */
+static PetscErrorCode StretchMetric(EqmSolver solver, PetscReal *weights, PetscReal *mass, PetscBool *with_mass)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
+  *with_mass = solver->domain->curved_image;
+  if (*with_mass) {
+    PetscCall(EqmImageMeasure(solver->domain, &solver->place, mass));
+    for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) mass[c] *= .1 * solver->domain->target_measure;
+  }
+  PetscFunctionReturn(0);
+}
+
+const EqmObjective EqmObjectiveAuthalic = {.evaluate = Evaluate, .metric = StretchMetric, .inverse_scale = .5};

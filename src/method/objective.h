@@ -1,0 +1,32 @@
+/* What the methods of descent minimise, and the metric that suits it: one for each energy of the table of problems. */
+#ifndef EQM_OBJECTIVE_H
+#define EQM_OBJECTIVE_H
+
+#include <equimap/solver.h>
+
+typedef struct {
+  /* Value at a place and, unless NULL, gradient in degrees of freedom; `image` returns the measures of the image cells.
+     Counts an evaluation. Collective. */
+  PetscErrorCode (*evaluate)(EqmSolver, const EqmPlace *place, PetscReal *image, PetscReal *value, Vec gradient);
+  /* A scalar Laplacian close to the Hessian at the present map, coordinate by coordinate: edge weights and a mass per
+     local cell, which `with_mass` says are to be used. Not collective. */
+  PetscErrorCode (*metric)(EqmSolver, PetscReal *weights, PetscReal *mass, PetscBool *with_mass);
+  PetscBool fixed_metric;  /* it does not depend on the map: one factorisation will do */
+  PetscReal inverse_scale; /* the inverse Hessian is about this times the inverse metric times the target's measure */
+  /* The largest t in (0, 1] for which no cell folds on the way along t times `direction`; NULL: do not ask. Collective.
+   */
+  PetscErrorCode (*longest_step)(EqmSolver, Vec direction, PetscReal *t);
+} EqmObjective;
+
+PETSC_INTERN const EqmObjective EqmObjectiveAuthalic, EqmObjectiveConformal;
+
+/* ---- angles (src/method/conformal.c) */
+/* Cotangent weights of the mesh, 3 per local cell; made at the first need and kept. Collective. */
+PETSC_INTERN PetscErrorCode EqmAngleWeights(EqmSolver solver, const PetscReal **weights);
+/* Lumped weights of the vertices, which add up to one; made at the first need and kept. Collective. */
+PETSC_INTERN PetscErrorCode EqmVertexMass(EqmSolver solver, const PetscReal **mass);
+
+/* The Mobius map that makes an angle-preserving map of a closed surface unique (src/method/normalise.c). Collective. */
+PETSC_INTERN PetscErrorCode EqmConformalFinish(EqmSolver solver);
+
+#endif

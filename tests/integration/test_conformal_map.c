@@ -1,0 +1,132 @@
+/* Whole runs of angle-preserving maps of closed surfaces: small angle errors without folds, the sphere itself, the same
+   map on any number of ranks, the same bits for any number of threads. */
+#include "support/testing.h"
+#include "energy/kernel.h"
+#include <omp.h>
+#include <string.h>
+
+static PetscErrorCode Map(TestMesh *test, const char *options, EqmMap *map)
+{
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(TestSolve(test->mesh, "conformal", options, &solver));
+  PetscCall(EqmSolverGetMap(solver, test->soup, map));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscFunctionReturn(0);
+}
+
+/* Converged, no folds, small angle errors, few factorisations. */
+static PetscErrorCode TestMethod(const char *shape, PetscInt n, const char *options, PetscReal degrees)
+{
+  TestMesh test;
+  EqmMap map;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 1, &test));
+  PetscCall(Map(&test, options, &map));
+  CHECK(map->status == EQM_STATUS_CONVERGED && map->distortion.folds == 0, "%s %s: status %d, %d folds: %s", shape,
+        options, (int)map->status, (int)map->distortion.folds, map->message);
+  CHECK(map->distortion.angle_error.mean < degrees, "%s %s: angle error %g degrees", shape, options,
+        (double)map->distortion.angle_error.mean);
+  CHECK(map->energy_final >= map->distortion.image_measure && map->energy_final < 4. * PETSC_PI * 1.02,
+        "%s %s: Dirichlet energy %g", shape, options, (double)map->energy_final);
+  PetscCall(EqmMapDestroy(&map));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* Mutual distances do not know rotations. */
+static PetscReal Distance(const PetscReal *p, const PetscReal *q)
+{
+  const PetscReal d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+  return PetscSqrtReal(EqmDot3(d, d));
+}
+
+/* The sphere's conformal map with its mass centre in the middle is the sphere's own, so centred, up to the error of the
+   mesh. */
+static PetscErrorCode TestSphereItself(void)
+{
+  TestMesh test;
+  EqmSolver solver;
+  EqmPlace itself;
+  const PetscReal *mass;
+  PetscReal offset, center[3], farthest = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "sphere", 1000, 1, &test));
+  PetscCall(TestSolve(test.mesh, "conformal", "", &solver));
+  PetscCall(EqmVertexMass(solver, &mass));
+  PetscCall(EqmPlaceMassCenter(solver->domain, mass, &solver->place, center));
+  CHECK_CLOSE(PetscSqrtReal(EqmDot3(center, center)), 0., 1e-12, 1.);
+  PetscCall(EqmPlaceCreate(solver->domain, &itself));
+  PetscCall(PetscArraycpy(itself.x, test.mesh->position, 3 * test.mesh->num_local));
+  PetscCall(EqmPlaceCenter(solver->domain, mass, &itself, &offset));
+  for (PetscInt k = 1; k < test.mesh->num_local; k++) {
+    const PetscReal *const x = solver->place.x, *const y = itself.x;
+    farthest = PetscMax(farthest, PetscAbsReal(Distance(x, x + 3 * k) - Distance(y, y + 3 * k)));
+  }
+  CHECK(farthest < 1e-4, "distances differ by %g", (double)farthest);
+  CHECK_CLOSE(solver->totals.energy, solver->totals.total, 1e-6, 1.);
+  PetscCall(EqmPlaceDestroy(&itself));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* The mesh on all ranks together and on each alone. */
+static PetscErrorCode TestRanks(const char *options, PetscReal tolerance)
+{
+  TestMesh test[2];
+  EqmMap map[2];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 2; k++) {
+    PetscCall(TestMeshCreate(k ? PETSC_COMM_WORLD : PETSC_COMM_SELF, "head", 500, 1, &test[k]));
+    PetscCall(Map(&test[k], options, &map[k]));
+  }
+  const PetscInt first = map[1]->soup->vertex_start;
+  for (PetscInt k = 0; k < 3 * (map[1]->soup->vertex_end - first); k++)
+    CHECK_CLOSE(map[1]->coordinates[k], map[0]->coordinates[3 * first + k], tolerance, 1.);
+  CHECK(map[0]->iterations == map[1]->iterations, "%s: %d iterations, alone %d", options, (int)map[1]->iterations,
+        (int)map[0]->iterations);
+  for (int k = 0; k < 2; k++) {
+    PetscCall(EqmMapDestroy(&map[k]));
+    PetscCall(TestMeshDestroy(&test[k]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* On one rank two threads change nothing. */
+static PetscErrorCode TestThreads(const char *options)
+{
+  TestMesh test;
+  EqmMap map[2];
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_SELF, "head", 900, 1, &test));
+  for (int k = 0; k < 2; k++) {
+    omp_set_num_threads(k + 1);
+    PetscCall(Map(&test, options, &map[k]));
+  }
+  omp_set_num_threads(1);
+  CHECK(!memcmp(map[0]->coordinates, map[1]->coordinates, sizeof(PetscReal) * 3 * (size_t)test.soup->num_vertices),
+        "%s: another map with two threads", options);
+  for (int k = 0; k < 2; k++) PetscCall(EqmMapDestroy(&map[k]));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestMethod("head", 1500, "", 1.));
+  PetscCall(TestMethod("head", 1500, "-start tutte", 1.));
+  PetscCall(TestMethod("head", 1500, "-start gauss -start_center", 1.));
+  PetscCall(TestSphereItself());
+  PetscCall(TestRanks("", 1e-7));
+  PetscCall(TestThreads(""));
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(0);
+}
