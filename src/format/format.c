@@ -7,16 +7,19 @@
 
 /* The order is that of recognition: formats that say clearly what they are come first. */
 static const EqmFormat formats[] = {
-    {"HDF5", "h5 hdf5", EqmRecogniseHdf5, NULL, NULL, EqmSoupReadHdf5, EqmSoupWriteHdf5},
-    {"PLY", "ply", EqmRecognisePly, EqmParsePly, EqmWritePly, NULL, NULL},
-    {"VTU", "vtu", EqmRecogniseVtu, EqmParseVtu, EqmWriteVtu, NULL, NULL},
-    {"VTP", "vtp", EqmRecogniseVtu, EqmParseVtu, NULL, NULL, NULL},
-    {"GIFTI", "gii", EqmRecogniseGifti, EqmParseGifti, EqmWriteGifti, NULL, NULL},
-    {"legacy VTK", "vtk", EqmRecogniseVtk, EqmParseVtk, NULL, NULL, NULL},
-    {"Gmsh MSH", "msh", EqmRecogniseGmsh, EqmParseGmsh, EqmWriteGmsh, NULL, NULL},
-    {"OFF", "off coff noff", EqmRecogniseOff, EqmParseOff, EqmWriteOff, NULL, NULL},
-    {"STL", "stl", EqmRecogniseStl, EqmParseStl, EqmWriteStl, NULL, NULL},
-    {"OBJ", "obj", EqmRecogniseObj, EqmParseObj, EqmWriteObj, NULL, NULL},
+    {"HDF5", "h5 hdf5", EqmRecogniseHdf5, NULL, NULL, EqmSoupReadHdf5, EqmSoupWriteHdf5, NULL},
+    {"PLY", "ply", EqmRecognisePly, EqmParsePly, EqmWritePly, NULL, NULL, NULL},
+    {"VTU", "vtu", EqmRecogniseVtu, EqmParseVtu, EqmWriteVtu, NULL, NULL, NULL},
+    {"VTP", "vtp", EqmRecogniseVtu, EqmParseVtu, NULL, NULL, NULL, NULL},
+    {"GIFTI", "gii", EqmRecogniseGifti, EqmParseGifti, EqmWriteGifti, NULL, NULL, NULL},
+    {"legacy VTK", "vtk", EqmRecogniseVtk, EqmParseVtk, EqmWriteVtk, NULL, NULL, NULL},
+    {"Gmsh MSH", "msh", EqmRecogniseGmsh, EqmParseGmsh, EqmWriteGmsh, NULL, NULL, NULL},
+    {"Medit mesh", "mesh", EqmRecogniseMedit, EqmParseMedit, EqmWriteMedit, NULL, NULL, NULL},
+    {"Medit meshb", "meshb", EqmRecogniseMeshb, EqmParseMeshb, EqmWriteMeshb, NULL, NULL, NULL},
+    {"OFF", "off coff noff", EqmRecogniseOff, EqmParseOff, EqmWriteOff, NULL, NULL, NULL},
+    {"STL", "stl", EqmRecogniseStl, EqmParseStl, EqmWriteStl, NULL, NULL, NULL},
+    {"TetGen", "node ele", EqmRecogniseTetgen, EqmParseTetgen, EqmWriteTetgen, NULL, NULL, EqmLoadTetgen},
+    {"OBJ", "obj", EqmRecogniseObj, EqmParseObj, EqmWriteObj, NULL, NULL, NULL},
 };
 
 #define NUM_FORMATS (sizeof(formats) / sizeof(formats[0]))
@@ -75,19 +78,20 @@ void EqmFormatListSuffixes(PetscBool writable, char *text, size_t length)
   }
 }
 
+/* EqmRequireSmall - refuse a mesh that a format with 32-bit numbers cannot count. Not collective. Errors: EQM_ERR_USAGE
+   (quiet, reason in `error`). */
+PetscErrorCode EqmRequireSmall(const EqmSerialMesh *mesh, const char *format, char *error, size_t length)
+{
+  if ((PetscInt64)mesh->num_vertices < INT32_MAX && (PetscInt64)mesh->num_cells < INT32_MAX) return 0;
+  snprintf(error, length, "%s files cannot count that many vertices or cells; choose .h5", format);
+  return EQM_ERR_USAGE;
+}
+
 /* EqmRequireTriangles - refuse a mesh that a surface format cannot hold. Not collective. Errors: EQM_ERR_USAGE (quiet,
    reason in `error`). */
 PetscErrorCode EqmRequireTriangles(const EqmSerialMesh *mesh, const char *format, char *error, size_t length)
 {
-  if (mesh->cell_size != 3) {
-    snprintf(error, length, "%s files cannot hold tetrahedra; choose .h5, .vtu or .msh", format);
-    return EQM_ERR_USAGE;
-  }
-#if defined(PETSC_USE_64BIT_INDICES)
-  if ((PetscInt64)mesh->num_vertices > INT32_MAX || (PetscInt64)mesh->num_cells > INT32_MAX) {
-    snprintf(error, length, "%s files cannot count that many vertices or triangles; choose .h5", format);
-    return EQM_ERR_USAGE;
-  }
-#endif
-  return 0;
+  if (mesh->cell_size == 3) return EqmRequireSmall(mesh, format, error, length);
+  snprintf(error, length, "%s files cannot hold tetrahedra; choose .h5, .vtu, .msh or .mesh", format);
+  return EQM_ERR_USAGE;
 }

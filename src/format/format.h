@@ -25,6 +25,9 @@ typedef PetscErrorCode (*EqmWriter)(EqmAtomicFile *file, const EqmSerialMesh *me
 /* Reader and writer of a format that all ranks read and write together. Collective. */
 typedef PetscErrorCode (*EqmParallelReader)(MPI_Comm comm, const char *file, EqmSoup *soup);
 typedef PetscErrorCode (*EqmParallelWriter)(EqmSoup soup, const char *file);
+/* For a mesh that lies in several files: replaces the bytes of the named one by those of all, as the parser wants them.
+   For one rank; fails quietly, with a sentence in `error`. */
+typedef PetscErrorCode (*EqmLoader)(const char *file, char **bytes, size_t *length, char *error, size_t error_length);
 
 typedef struct {
   const char *name;
@@ -34,6 +37,7 @@ typedef struct {
   EqmWriter write;                                          /* NULL: cannot be written by one rank */
   EqmParallelReader read_parallel;                          /* used instead of `parse` where it is there */
   EqmParallelWriter write_parallel;                         /* used instead of `write` where it is there */
+  EqmLoader load;                                           /* NULL: a mesh is one file */
 } EqmFormat;
 
 PETSC_INTERN const EqmFormat *EqmFormatAt(PetscInt row);
@@ -42,6 +46,7 @@ PETSC_INTERN const EqmFormat *EqmFormatOfSuffix(const char *file);
 PETSC_INTERN void EqmFormatListSuffixes(PetscBool writable, char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                                  PetscInt num_fields, char *error, size_t length);
+PETSC_INTERN PetscErrorCode EqmRequireSmall(const EqmSerialMesh *mesh, const char *format, char *error, size_t length);
 PETSC_INTERN PetscErrorCode EqmRequireTriangles(const EqmSerialMesh *mesh, const char *format, char *error,
                                                 size_t length);
 PETSC_INTERN PetscErrorCode EqmFormatLoadBytes(const char *file, char **bytes, size_t *length, char *error,
@@ -63,6 +68,9 @@ EQM_DECLARE_PARSER(Gmsh);
 EQM_DECLARE_PARSER(Vtu);
 EQM_DECLARE_PARSER(Vtk);
 EQM_DECLARE_PARSER(Gifti);
+EQM_DECLARE_PARSER(Medit);
+EQM_DECLARE_PARSER(Meshb);
+EQM_DECLARE_PARSER(Tetgen);
 EQM_DECLARE_WRITER(Obj);
 EQM_DECLARE_WRITER(Off);
 EQM_DECLARE_WRITER(Ply);
@@ -70,6 +78,12 @@ EQM_DECLARE_WRITER(Stl);
 EQM_DECLARE_WRITER(Gmsh);
 EQM_DECLARE_WRITER(Vtu);
 EQM_DECLARE_WRITER(Gifti);
+EQM_DECLARE_WRITER(Vtk);
+EQM_DECLARE_WRITER(Medit);
+EQM_DECLARE_WRITER(Meshb);
+EQM_DECLARE_WRITER(Tetgen);
+PETSC_INTERN PetscErrorCode EqmLoadTetgen(const char *file, char **bytes, size_t *length, char *error,
+                                          size_t error_length);
 PETSC_INTERN PetscBool EqmRecogniseHdf5(const char *bytes, size_t length);
 PETSC_INTERN PetscErrorCode EqmSoupReadHdf5(MPI_Comm comm, const char *file, EqmSoup *soup);
 PETSC_INTERN PetscErrorCode EqmSoupWriteHdf5(EqmSoup soup, const char *file);

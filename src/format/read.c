@@ -27,6 +27,7 @@ static PetscErrorCode ReadOnRoot(const char *file, const EqmFormat **format, Eqm
   PetscErrorCode code = EqmFormatLoadBytes(file, &bytes, &length, error, error_length);
 
   if (!code) code = ChooseFormat(file, bytes, length, format, error, error_length);
+  if (!code && (*format)->load) code = (*format)->load(file, &bytes, &length, error, error_length);
   if (!code && !(*format)->read_parallel) {
     code = (*format)->parse(bytes, length, mesh, reason, sizeof(reason));
     if (code == EQM_ERR_IO) snprintf(error, error_length, "cannot read %s as %s: %s", file, (*format)->name, reason);

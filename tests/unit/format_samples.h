@@ -11,7 +11,7 @@
 #include <equimap/soup.h>
 
 #define SAMPLE_BYTES 8192
-#define MAX_SAMPLES  64
+#define MAX_SAMPLES  96
 
 typedef struct {
   const char *name, *suffix;
@@ -365,6 +365,7 @@ static void MakeVtk(Sample *samples, int *count, int binary, int version, PetscI
 }
 
 #include "format_samples_xml.h"
+#include "format_samples_medit.h"
 
 /* Fill `samples` (MAX_SAMPLES) and return how many there are. */
 static int MakeSamples(Sample *samples)
@@ -389,6 +390,7 @@ static int MakeSamples(Sample *samples)
     }
   }
   MakeAllVtu(samples, &count);
+  MakeAllMedit(samples, &count);
   for (int way = 0; way < 3; ++way) MakeGifti(samples, &count, way);
   return count;
 }

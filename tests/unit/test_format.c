@@ -138,18 +138,25 @@ static EqmSoup HardSoup(PetscInt cell_size)
 
 static void TestWriters(const char *message)
 {
-  static const char *const suffix[] = {"obj", "off", "ply", "vtu", "msh", "h5", "gii", "stl"};
+  static const struct {
+    const char *suffix;
+    PetscBool solid, exact; /* holds tetrahedra, brings back the same bits */
+  } kind[] = {{"obj", PETSC_FALSE, PETSC_TRUE}, {"off", PETSC_FALSE, PETSC_TRUE}, {"ply", PETSC_FALSE, PETSC_TRUE},
+              {"vtu", PETSC_TRUE, PETSC_TRUE},  {"msh", PETSC_TRUE, PETSC_TRUE},  {"h5", PETSC_TRUE, PETSC_TRUE},
+              {"vtk", PETSC_TRUE, PETSC_TRUE},  {"mesh", PETSC_TRUE, PETSC_TRUE}, {"meshb", PETSC_TRUE, PETSC_TRUE},
+              {"node", PETSC_TRUE, PETSC_TRUE}, {"ele", PETSC_TRUE, PETSC_TRUE},  {"gii", PETSC_FALSE, PETSC_FALSE},
+              {"stl", PETSC_FALSE, PETSC_FALSE}};
 
   for (PetscInt size = 3; size <= 4; ++size) {
     EqmSoup soup = HardSoup(size);
 
-    for (int i = 0; i < 8; ++i) {
-      const PetscBool solid = i >= 3 && i <= 5 ? PETSC_TRUE : PETSC_FALSE, exact = i <= 5 ? PETSC_TRUE : PETSC_FALSE;
+    for (size_t i = 0; i < sizeof(kind) / sizeof(kind[0]); ++i) {
+      const PetscBool solid = kind[i].solid, exact = kind[i].exact;
       EqmSoup back = NULL;
       char name[32];
       PetscErrorCode code;
 
-      snprintf(name, sizeof(name), "out%d.%s", (int)size, suffix[i]);
+      snprintf(name, sizeof(name), "out%d.%s", (int)size, kind[i].suffix);
       code = EqmSoupWrite(soup, PathOf(name));
       CHECK(code == (size == 4 && !solid ? EQM_ERR_USAGE : 0), "writing %s: code %d: %s", name, code,
             code ? message : "");
@@ -177,7 +184,7 @@ static void TestFields(void)
   PetscInt cells[12];
   EqmSerialMesh mesh = {5, 4, 3, vertices, cells}, back = {0};
   char error[EQM_MESSAGE_MAX] = "", *bytes;
-  static const char *const names[] = {"f.vtu", "f.ply", "f.gii", "f.obj"};
+  static const char *const names[] = {"f.vtu", "f.ply", "f.gii", "f.obj", "f.vtk", "f.mesh"};
   size_t length;
   int rank;
 
@@ -185,7 +192,7 @@ static void TestFields(void)
   if (rank) return;
   for (int i = 0; i < 15; ++i) vertices[i] = sample_vertices[i];
   for (int i = 0; i < 12; ++i) cells[i] = sample_triangles[i];
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 6; ++i) {
     PetscErrorCode code = EqmFormatWriteSerial(PathOf(names[i]), &mesh, fields, 2, error, sizeof(error));
 
     CHECK(!code, "%s with fields: %s", names[i], error);
@@ -268,6 +275,29 @@ static const BadFile bad_files[] = {
     {"quads.vtk", EQM_ERR_MESH, "VTK type 7",
      "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\nPOLYGONS 1 "
      "5\n4 0 1 2 3\n"},
+    {"word.mesh", EQM_ERR_IO, "begins with MeshVersionFormatted", "MFEM mesh v1.0\n"},
+    {"none.mesh", EQM_ERR_MESH, "no triangles", "MeshVersionFormatted 1\nDimension 3\nVertices 1\n0 0 0 0\nEnd\n"},
+    {"truncated.mesh", EQM_ERR_IO, "line 4: vertex 1 of 2 needs 3 coordinates: the file is truncated",
+     "MeshVersionFormatted 1\nDimension 3\nVertices 2\n0 0 0 0"},
+    {"noend.mesh", EQM_ERR_IO, "End is missing", "MeshVersionFormatted 1\nDimension 3\nVertices 1\n0 0 0 0\n"},
+    {"liar.mesh", EQM_ERR_IO, "too short", "MeshVersionFormatted 1\nDimension 3\nVertices 1000000000000\n0 0 0 0\n"},
+    {"order.mesh", EQM_ERR_IO, "before the section Vertices",
+     "MeshVersionFormatted 1\nDimension 3\nTriangles 1\n1 2 3 0\nEnd\n"},
+    {"range.mesh", EQM_ERR_IO, "line 6: Triangles: vertex number 4 is out of range 1..3",
+     "MeshVersionFormatted 1 Dimension 3\nVertices 3\n0 0 0 0\n1 0 0 0\n0 1 0 0 Triangles 1\n1 2 4 0\nEnd\n"},
+    {"space.mesh", EQM_ERR_IO, "dimension 4", "MeshVersionFormatted 1\nDimension 4\nEnd\n"},
+    {"bricks.mesh", EQM_ERR_MESH, "line 4: 1 Hexahedra",
+     "MeshVersionFormatted 1\nDimension 3\nVertices 1 0 0 0 0\nHexahedra 1\n1 1 1 1 1 1 1 1 0\nEnd\n"},
+    {"fake.meshb", EQM_ERR_IO, "begins with 1", "\1\2\3\4 and so on"},
+    {"lonely.node", EQM_ERR_IO, "lonely.ele", "3 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n"},
+    {"lonely.tetgen", EQM_ERR_IO, "no .ele file", "3 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n"},
+    {"range.tetgen", EQM_ERR_IO, "line 2: .ele: vertex number 3 is out of range 0..2",
+     "3 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n\f1 3 0\n1 0 1 3\n"},
+    {"gap.tetgen", EQM_ERR_IO, "line 3: vertex number 3", "2 3 0 0\n1 0 0 0\n3 1 0 0\n\f1 3 0\n1 1 1 2\n"},
+    {"truncated.tetgen", EQM_ERR_IO, "cell 1 of 2 is missing: the file is truncated",
+     "3 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n\f2 3 0\n0 0 1 2\n"},
+    {"liar.tetgen", EQM_ERR_IO, "too short", "1000000000 3 0 0\n0 0 0 0\n\f"},
+    {"second.tetgen", EQM_ERR_MESH, "cells have 10 vertices", "1 3 0 0\n1 0 0 0\n\f1 10 0\n1 1 1 1 1 1 1 1 1 1 1\n"},
     {"none.gii", EQM_ERR_MESH, "no triangles", "<GIFTI Version=\"1.0\"></GIFTI>"},
     {"fake.h5", EQM_ERR_IO, "HDF5", "\211HDF\r\n\032\n and nothing more"},
 };

@@ -1,0 +1,190 @@
+/* Medit's .mesh, as text: sections of a keyword, a count and lines that end with a reference number. Vertices count
+   from 1. Sections that are no vertices, triangles or tetrahedra are passed over. */
+#include "format.h"
+#include "medit.h"
+
+#include <ctype.h>
+
+const EqmMeditKind EqmMeditKinds[EQM_MEDIT_NUM_KINDS] = {
+    {"Triangles", 6, 2, 3, PETSC_TRUE},   {"Quadrilaterals", 7, 2, 4, PETSC_FALSE},
+    {"Tetrahedra", 8, 3, 4, PETSC_TRUE},  {"Prisms", 9, 3, 6, PETSC_FALSE},
+    {"Hexahedra", 10, 3, 8, PETSC_FALSE}, {"TrianglesP2", 24, 2, 6, PETSC_FALSE},
+    {"Pyramids", 49, 3, 5, PETSC_FALSE},  {"TetrahedraP2", 30, 3, 10, PETSC_FALSE},
+};
+
+typedef struct {
+  EqmInput *in;
+  EqmBuilder builder;
+  PetscInt64 dimension;
+} Medit;
+
+/* EqmRecogniseMedit - the first keyword, after comments. Not collective. */
+PetscBool EqmRecogniseMedit(const char *bytes, size_t length)
+{
+  EqmInput in;
+  char unused[8];
+
+  EqmInputOpen(&in, bytes, length, unused, sizeof(unused));
+  EqmSkipMark(&in);
+  EqmSkipSpace(&in, '#');
+  return EqmReadKeyword(&in, "MeshVersionFormatted");
+}
+
+/* EqmMeditStartCells - room for `count` cells that begin where the cursor stands; NULL if they are of a kind that is
+   only noted. Not collective. Errors: EQM_ERR_IO (quiet) if the vertices are not known yet. */
+PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 count, PetscInt **cells)
+{
+  char what[64];
+
+  *cells = NULL;
+  if (!kind->wanted) {
+    snprintf(what, sizeof(what), "%lld %s", (long long)count, kind->keyword);
+    if (count) EqmBuilderNoteOther(builder, kind->dimension, builder->in->cursor, what);
+    return 0;
+  }
+  if (!builder->num_vertices && count) {
+    return EqmReject(builder->in, EQM_ERR_IO, "the section %s comes before the section Vertices", kind->keyword);
+  }
+  return EqmBuilderAddCells(builder, kind->num_corners, (size_t)count, cells);
+}
+
+/* EqmMeditTakeCorner - from the file's vertex number to ours. Not collective. Errors: EQM_ERR_IO (quiet). */
+PetscErrorCode EqmMeditTakeCorner(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 vertex, PetscInt *corner)
+{
+  if (vertex < 1 || vertex > (PetscInt64)builder->num_vertices) {
+    return EqmReject(builder->in, EQM_ERR_IO, "%s: vertex number %lld is out of range 1..%zu", kind->keyword,
+                     (long long)vertex, builder->num_vertices);
+  }
+  *corner = (PetscInt)(vertex - 1);
+  return 0;
+}
+
+static PetscErrorCode ReadInteger(Medit *medit, const char *what, PetscInt64 *value)
+{
+  EqmSkipSpace(medit->in, '#');
+  if (EqmReadInteger(medit->in, value)) return 0;
+  return EqmReject(medit->in, EQM_ERR_IO, "%s: a whole number is missing%s", what,
+                   medit->in->cursor == medit->in->end ? ": the file is truncated" : "");
+}
+
+static PetscErrorCode ParseDimension(Medit *medit)
+{
+  EqmTry(ReadInteger(medit, "Dimension", &medit->dimension));
+  if (medit->dimension == 2 || medit->dimension == 3) return 0;
+  return EqmReject(medit->in, EQM_ERR_IO, "dimension %lld: only 2 and 3 are known", (long long)medit->dimension);
+}
+
+static PetscErrorCode ParseVertices(Medit *medit)
+{
+  EqmInput *const in = medit->in;
+  PetscInt64 count, reference;
+  PetscReal *x;
+
+  if (!medit->dimension) return EqmReject(in, EQM_ERR_IO, "the section Vertices comes before Dimension");
+  if (medit->builder.num_vertices) return EqmReject(in, EQM_ERR_IO, "a second section Vertices");
+  EqmSkipSpace(in, '#');
+  EqmTry(EqmReadCount(in, "vertices", 2 * (size_t)medit->dimension + 2, &count));
+  EqmTry(EqmBuilderAddVertices(&medit->builder, (size_t)count, &x));
+  for (PetscInt64 i = 0; i < count; ++i) {
+    x[3 * i + 2] = 0.0; /* of the plane */
+    for (PetscInt64 k = 0; k < medit->dimension; ++k) {
+      EqmSkipSpace(in, '#');
+      if (!EqmReadReal(in, &x[3 * i + k])) {
+        return EqmReject(in, EQM_ERR_IO, "vertex %lld of %lld needs %lld coordinates%s", (long long)i, (long long)count,
+                         (long long)medit->dimension, in->cursor == in->end ? ": the file is truncated" : "");
+      }
+    }
+    EqmTry(ReadInteger(medit, "Vertices", &reference));
+  }
+  return 0;
+}
+
+static PetscErrorCode ParseCells(Medit *medit, const EqmMeditKind *kind)
+{
+  PetscInt64 count, value;
+  PetscInt *cells;
+
+  EqmSkipSpace(medit->in, '#');
+  EqmTry(EqmReadCount(medit->in, kind->keyword, 2 * (size_t)kind->num_corners + 2, &count));
+  EqmTry(EqmMeditStartCells(&medit->builder, kind, count, &cells));
+  for (PetscInt64 i = 0; cells && i < count; ++i) {
+    for (PetscInt k = 0; k < kind->num_corners; ++k) {
+      EqmTry(ReadInteger(medit, kind->keyword, &value));
+      EqmTry(EqmMeditTakeCorner(&medit->builder, kind, value, &cells[kind->num_corners * i + k]));
+    }
+    EqmTry(ReadInteger(medit, kind->keyword, &value));
+  }
+  return 0;
+}
+
+/* Move over numbers, to the next keyword or the end. */
+static void SkipNumbers(EqmInput *in)
+{
+  const char *word;
+
+  for (EqmSkipSpace(in, '#'); in->cursor < in->end && !isalpha((unsigned char)*in->cursor); EqmSkipSpace(in, '#')) {
+    (void)EqmReadWord(in, &word);
+  }
+}
+
+static PetscErrorCode ParseSections(Medit *medit)
+{
+  EqmInput *const in = medit->in;
+
+  EqmSkipMark(in);
+  EqmSkipSpace(in, '#');
+  if (!EqmReadKeyword(in, "MeshVersionFormatted")) {
+    return EqmReject(in, EQM_ERR_IO, "a .mesh file of Medit begins with MeshVersionFormatted");
+  }
+  for (SkipNumbers(in); in->cursor < in->end; SkipNumbers(in)) {
+    const EqmMeditKind *kind = NULL;
+    const char *word;
+    const size_t length = EqmReadWord(in, &word);
+
+    if (EqmWordIs(word, length, "End")) return 0;
+    for (int k = 0; k < EQM_MEDIT_NUM_KINDS; ++k) {
+      if (EqmWordIs(word, length, EqmMeditKinds[k].keyword)) kind = &EqmMeditKinds[k];
+    }
+    if (EqmWordIs(word, length, "Dimension")) {
+      EqmTry(ParseDimension(medit));
+    } else if (EqmWordIs(word, length, "Vertices")) {
+      EqmTry(ParseVertices(medit));
+    } else if (kind) {
+      EqmTry(ParseCells(medit, kind));
+    }
+  }
+  return EqmReject(in, EQM_ERR_IO, "the keyword End is missing: the file is truncated");
+}
+
+/* EqmParseMedit - read a .mesh file. See EqmParser. */
+PetscErrorCode EqmParseMedit(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+{
+  EqmInput in;
+  Medit medit = {.in = &in};
+
+  EqmInputOpen(&in, bytes, length, error, error_length);
+  EqmBuilderOpen(&medit.builder, &in);
+  return EqmBuilderFinish(&medit.builder, ParseSections(&medit), mesh);
+}
+
+/* EqmWriteMedit - write a .mesh file with reference number 0 everywhere. See EqmWriter. */
+PetscErrorCode EqmWriteMedit(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
+                             PetscInt num_fields, char *error, size_t error_length)
+{
+  const PetscInt size = mesh->cell_size;
+
+  EqmAtomicPrint(file, "MeshVersionFormatted 2\nDimension 3\n\nVertices\n%lld\n", (long long)mesh->num_vertices);
+  for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
+    EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
+    EqmAtomicWrite(file, " 0\n", 3);
+  }
+  EqmAtomicPrint(file, "\n%s\n%lld\n", size == 3 ? "Triangles" : "Tetrahedra", (long long)mesh->num_cells);
+  for (PetscInt i = 0; i < mesh->num_cells; ++i) {
+    const PetscInt *const cell = mesh->cells + (size_t)size * (size_t)i;
+
+    for (PetscInt k = 0; k < size; ++k) EqmAtomicPrint(file, "%lld ", (long long)cell[k] + 1);
+    EqmAtomicWrite(file, "0\n", 2);
+  }
+  EqmAtomicPrint(file, "\nEnd\n");
+  return 0;
+}

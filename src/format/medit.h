@@ -1,0 +1,22 @@
+/* What the text and the binary form of Medit's format share. */
+#ifndef EQM_FORMAT_MEDIT_H
+#define EQM_FORMAT_MEDIT_H
+
+#include "builder.h"
+
+/* A kind of cells: its keyword in text and its code in binary files. */
+typedef struct {
+  const char *keyword;
+  PetscInt code, dimension, num_corners;
+  PetscBool wanted; /* triangles and tetrahedra; the others are only noted */
+} EqmMeditKind;
+
+#define EQM_MEDIT_NUM_KINDS 8
+PETSC_INTERN const EqmMeditKind EqmMeditKinds[EQM_MEDIT_NUM_KINDS];
+
+PETSC_INTERN PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 count,
+                                               PetscInt **cells);
+PETSC_INTERN PetscErrorCode EqmMeditTakeCorner(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 vertex,
+                                               PetscInt *corner);
+
+#endif
