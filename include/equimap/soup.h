@@ -79,6 +79,7 @@ typedef enum {
   EQM_FINDING_NON_MANIFOLD_VERTEX,      /* link is not one path or one circle */
   EQM_FINDING_INCONSISTENT_ORIENTATION, /* edges that two cells run through in the same direction */
   EQM_FINDING_NOT_ORIENTABLE,
+  EQM_FINDING_OVERLAP,            /* faces with both their tetrahedra on the same side */
   EQM_FINDING_COMPONENTS,         /* more than one connected component */
   EQM_FINDING_HOLES,              /* boundary loops beyond the one that a disk has */
   EQM_FINDING_GENUS,              /* handles */

@@ -18,7 +18,7 @@ static PetscErrorCode AskOptions(MapOptions *options)
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
   PetscCall(PetscOptionsString("-o",
                                "where the map goes: .h5 (everything, with an .xmf for ParaView), .obj .off .ply .vtu "
-                               ".msh .gii; several with commas",
+                               ".vtk .msh .mesh .gii; several with commas",
                                NULL, "", options->output, sizeof(options->output), &options->has_output));
   PetscCall(PetscOptionsString("-summary", "write the run's figures as JSON", NULL, "", options->summary,
                                sizeof(options->summary), &options->has_summary));

@@ -44,6 +44,9 @@ static void CountTetrahedronFaces(const EqmVicinity *vicinity, PetscInt v, const
     if (link->edge_count[e] > 2) {
       EqmFindingAdd(&finding[EQM_FINDING_NON_MANIFOLD_EDGE], a, PetscMin(b, c), PetscMax(b, c), -1);
     }
+    if (link->edge_count[e] == 2 && PetscAbsInt(link->edge_sides[e]) == 2) {
+      EqmFindingAdd(&finding[EQM_FINDING_OVERLAP], a, PetscMin(b, c), PetscMax(b, c), -1);
+    }
   }
 }
 

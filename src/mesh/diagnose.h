@@ -20,6 +20,7 @@ typedef struct {
   PetscInt num_cells;
   PetscInt *cells;      /* cell_size * num_cells, local vertex numbers */
   PetscInt *cell_input; /* input number per cell, ascending */
+  signed char *side;    /* tetrahedra: the sign of the volume, else NULL */
   PetscInt *star_start; /* num_owned + 1 */
   PetscInt *star;       /* the cells around owned vertex v: star[star_start[v]] .. */
 } EqmVicinity;
@@ -47,6 +48,7 @@ typedef struct {
   PetscInt num_edges;     /* tetrahedra: edges of the link, that is faces of the star */
   PetscInt *edge;         /* 2 * num_edges, places in `vertex` */
   PetscInt *edge_count;   /* cells at that face */
+  PetscInt *edge_sides;   /* sum over them of the side they lie on, +1 or -1, 0 for a flat one */
   PetscBool manifold;     /* no edge (face) has more than two cells */
   PetscBool regular;      /* one path or circle; for tetrahedra one disk or sphere */
   PetscInt *place;        /* private from here on: place in `vertex` per local vertex, or -1 */

@@ -70,13 +70,11 @@ static void DiagnoseSlab(EqmSoup soup, EqmDiagnosis *diagnosis)
 }
 
 /* Tetrahedra whose volume has the sign `sign`. */
-static void FindInverted(const EqmVicinity *vicinity, PetscReal sign, EqmFinding *finding)
+static void FindInverted(const EqmVicinity *vicinity, int sign, EqmFinding *finding)
 {
   for (PetscInt c = 0; c < vicinity->num_cells; c++) {
-    PetscReal quality;
-
     if (EqmVicinityCellOwnerVertex(vicinity, c) >= vicinity->num_owned) continue;
-    if (sign * EqmCellMeasure(vicinity, c, &quality) > 0.0) EqmFindingAdd(finding, vicinity->cell_input[c], -1, -1, -1);
+    if (vicinity->side[c] == sign) EqmFindingAdd(finding, vicinity->cell_input[c], -1, -1, -1);
   }
 }
 
@@ -124,8 +122,7 @@ PetscErrorCode EqmDiagnoseCells(EqmSoup soup, const EqmVicinity *vicinity, EqmDi
   PetscCall(ReduceMeasures(vicinity->comm, diagnosis));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, signs, 2, MPIU_INT64, MPI_SUM, vicinity->comm));
   if (signs[0] && signs[1]) {
-    FindInverted(vicinity, signs[0] >= signs[1] ? -1.0 : 1.0,
-                 &diagnosis->finding[EQM_FINDING_INCONSISTENT_ORIENTATION]);
+    FindInverted(vicinity, signs[0] >= signs[1] ? -1 : 1, &diagnosis->finding[EQM_FINDING_INCONSISTENT_ORIENTATION]);
   }
   PetscFunctionReturn(0);
 }

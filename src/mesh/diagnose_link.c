@@ -16,7 +16,7 @@ PetscErrorCode EqmLinkCreate(const EqmVicinity *vicinity, EqmLink *link)
                          &link->on_boundary, n, &link->vertex_root));
   PetscCall(PetscMalloc6(2 * n, &link->edge, n, &link->edge_count, n, &link->corner_root, 2 * n, &link->edge_corner, n,
                          &link->edge_head, n, &link->edge_next));
-  PetscCall(PetscMalloc1(vicinity->num_local, &link->place));
+  PetscCall(PetscMalloc2(n, &link->edge_sides, vicinity->num_local, &link->place));
   for (PetscInt v = 0; v < vicinity->num_local; v++) link->place[v] = -1;
   PetscFunctionReturn(0);
 }
@@ -29,7 +29,7 @@ PetscErrorCode EqmLinkReset(EqmLink *link)
       PetscFree6(link->vertex, link->leaving, link->entering, link->edge_cell, link->on_boundary, link->vertex_root));
   PetscCall(
       PetscFree6(link->edge, link->edge_count, link->corner_root, link->edge_corner, link->edge_head, link->edge_next));
-  PetscCall(PetscFree(link->place));
+  PetscCall(PetscFree2(link->edge_sides, link->place));
   PetscFunctionReturn(0);
 }
 
@@ -100,16 +100,19 @@ static void LinkOfTriangles(const EqmVicinity *vicinity, PetscInt vertex, EqmLin
 }
 
 /* Enter the edge between the places a and b of the link's triangle that has the corners `corner_a`, `corner_b` there;
-   the corners at an end of an edge of two triangles are one and the same fan. Returns how many fans this joins. */
-static PetscInt EnterLinkEdge(EqmLink *link, PetscInt a, PetscInt corner_a, PetscInt b, PetscInt corner_b)
+   the corners at an end of an edge of two triangles are one and the same fan. `turn` is how the triangle turns, seen
+   from outside. Returns how many fans this joins. */
+static PetscInt EnterLinkEdge(EqmLink *link, PetscInt a, PetscInt corner_a, PetscInt b, PetscInt corner_b,
+                              PetscInt turn)
 {
-  const PetscInt low = PetscMin(a, b), high = PetscMax(a, b);
+  const PetscInt low = PetscMin(a, b), high = PetscMax(a, b), side = a < b ? turn : -turn;
   const PetscInt corner_low = a < b ? corner_a : corner_b, corner_high = a < b ? corner_b : corner_a;
   PetscInt e;
 
   for (e = link->edge_head[low]; e >= 0 && link->edge[2 * e + 1] != high; e = link->edge_next[e]) continue;
   if (e >= 0) {
     link->edge_count[e]++;
+    link->edge_sides[e] += side;
     return Join(link->corner_root, link->edge_corner[2 * e], corner_low) +
            Join(link->corner_root, link->edge_corner[2 * e + 1], corner_high);
   }
@@ -117,6 +120,7 @@ static PetscInt EnterLinkEdge(EqmLink *link, PetscInt a, PetscInt corner_a, Pets
   link->edge[2 * e] = low;
   link->edge[2 * e + 1] = high;
   link->edge_count[e] = 1;
+  link->edge_sides[e] = side;
   link->edge_corner[2 * e] = corner_low;
   link->edge_corner[2 * e + 1] = corner_high;
   link->edge_next[e] = link->edge_head[low];
@@ -130,17 +134,20 @@ static void LinkOfTetrahedra(const EqmVicinity *vicinity, PetscInt vertex, EqmLi
   PetscInt pieces = 0, fans = 3 * num_triangles, num_boundary = 0, euler;
 
   for (PetscInt t = 0; t < num_triangles; t++) {
-    const PetscInt *const corner = vicinity->cells + 4 * vicinity->star[vicinity->star_start[vertex] + t];
-    PetscInt place[3], n = 0;
+    const PetscInt cell = vicinity->star[vicinity->star_start[vertex] + t], *const corner = vicinity->cells + 4 * cell;
+    PetscInt place[3], n = 0, turn = vicinity->side[cell];
 
     for (int k = 0; k < 4; k++) {
-      if (corner[k] != vertex) place[n++] = Place(link, corner[k]);
+      if (corner[k] != vertex)
+        place[n++] = Place(link, corner[k]);
+      else if (k % 2)
+        turn = -turn;
     }
     for (PetscInt k = 0; k < 3; k++) link->corner_root[3 * t + k] = 3 * t + k;
     for (PetscInt k = 0; k < 3; k++) {
       const PetscInt l = (k + 1) % 3;
 
-      fans -= EnterLinkEdge(link, place[k], 3 * t + k, place[l], 3 * t + l);
+      fans -= EnterLinkEdge(link, place[k], 3 * t + k, place[l], 3 * t + l, turn);
       pieces -= Join(link->vertex_root, place[k], place[l]);
     }
   }

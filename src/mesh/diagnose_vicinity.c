@@ -1,6 +1,7 @@
 /* Collect the cells around each rank's slab of vertices. */
 #include "mesh/diagnose.h"
 #include "base/exchange.h"
+#include "energy/kernel.h"
 
 /* Tell whether a cell of the soup (its `cell_size` input vertex numbers) can be looked at. Not collective. */
 EqmCellUse EqmSoupCellUse(EqmSoup soup, const PetscInt *cell)
@@ -137,6 +138,22 @@ static PetscErrorCode CollectPositions(EqmSoup soup, EqmVicinity *vicinity)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode FindSides(EqmVicinity *vicinity)
+{
+  const PetscReal *const p = vicinity->position;
+
+  PetscFunctionBegin;
+  if (vicinity->cell_size != 4) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(vicinity->num_cells, &vicinity->side));
+  for (PetscInt c = 0; c < vicinity->num_cells; c++) {
+    const PetscInt *const v = vicinity->cells + 4 * c;
+    const PetscReal volume = EqmVolume(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2], p + 3 * v[3]);
+
+    vicinity->side[c] = (signed char)((volume > 0.0) - (volume < 0.0));
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MakeStars(EqmVicinity *vicinity)
 {
   const PetscInt cs = vicinity->cell_size;
@@ -172,6 +189,7 @@ PetscErrorCode EqmVicinityCreate(EqmSoup soup, EqmVicinity *vicinity)
   PetscCall(CollectCells(soup, vicinity));
   PetscCall(NumberVertices(vicinity));
   PetscCall(CollectPositions(soup, vicinity));
+  PetscCall(FindSides(vicinity));
   PetscCall(PetscMalloc1(vicinity->num_owned + 1, &vicinity->star_start));
   PetscCall(MakeStars(vicinity));
   PetscFunctionReturn(0);
@@ -185,6 +203,7 @@ PetscErrorCode EqmVicinityReset(EqmVicinity *vicinity)
   PetscCall(PetscFree(vicinity->position));
   PetscCall(PetscFree(vicinity->cells));
   PetscCall(PetscFree(vicinity->cell_input));
+  PetscCall(PetscFree(vicinity->side));
   PetscCall(PetscFree(vicinity->star_start));
   PetscCall(PetscFree(vicinity->star));
   PetscCall(PetscSFDestroy(&vicinity->ghosts));
@@ -266,6 +285,7 @@ PetscErrorCode EqmVicinityDropDuplicates(EqmVicinity *vicinity, PetscInt *first)
   for (PetscInt c = 0; c < vicinity->num_cells; c++) {
     if (first[c] != c) continue;
     vicinity->cell_input[kept] = vicinity->cell_input[c];
+    if (cs == 4) vicinity->side[kept] = vicinity->side[c];
     for (PetscInt a = 0; a < cs; a++) vicinity->cells[cs * kept + a] = vicinity->cells[cs * c + a];
     kept++;
   }

@@ -7,7 +7,7 @@ typedef struct {
   EqmPlacement place;
 } EqmShape;
 
-#define EQM_NUM_SHAPES 12
+#define EQM_NUM_SHAPES 13
 
 static const EqmShape shape_table[EQM_NUM_SHAPES] = {
     {"cap", "spherical cap, one boundary loop, finer towards its pole (disk)", &EqmLatticeHexagon, EqmPlaceCap},
@@ -19,6 +19,7 @@ static const EqmShape shape_table[EQM_NUM_SHAPES] = {
     {"starfish", "closed body with five thin arms (sphere; hard)", &EqmLatticeIcosahedron, EqmPlaceStarfish},
     {"ball", "unit ball of tetrahedra (ball)", &EqmLatticeCube, EqmPlaceBall},
     {"blob", "ball of tetrahedra, stretched and bent at random (ball)", &EqmLatticeCube, EqmPlaceBlob},
+    {"figure", "solid of tetrahedra with arms, legs and a head (ball; hard)", &EqmLatticeCube, EqmPlaceFigure},
     {"cube", "cube of tetrahedra (ball)", &EqmLatticeCube, EqmPlaceCube},
     {"torus", "closed surface of genus 1 (bad input: no command can map it)", &EqmLatticeTorus, EqmPlaceTorus},
     {"annulus", "flat ring with two boundary loops (bad input)", &EqmLatticeAnnulus, EqmPlaceAnnulus},

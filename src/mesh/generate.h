@@ -40,6 +40,7 @@ PETSC_INTERN void EqmPlaceHead(const EqmLatticePlan *, const PetscReal[3], Petsc
 PETSC_INTERN void EqmPlaceStarfish(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN void EqmPlaceCube(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN void EqmPlaceBall(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void EqmPlaceFigure(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN void EqmPlaceBlob(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
 
 /* A number in [0, 1) that depends on its arguments alone. */

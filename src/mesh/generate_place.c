@@ -192,3 +192,28 @@ void EqmPlaceBlob(const EqmLatticePlan *plan, const PetscReal parameter[3], Pets
   position[1] = 0.8 * y;
   position[2] = 1.4 * ball[2];
 }
+
+/* A body with two arms, two legs and a head: limbs are pulled out of the ball along their axes, which turns nothing
+   over however far they reach, and then twisted. */
+void EqmPlaceFigure(const EqmLatticePlan *plan, const PetscReal parameter[3], PetscReal position[3])
+{
+  static const PetscReal axis[5][3] = {
+      {0.96, 0.0, 0.28}, {-0.96, 0.0, 0.28}, {0.48, 0.14, -0.866}, {-0.48, 0.14, -0.866}, {0.0, 0.28, 0.96}};
+  const PetscReal twist = Random(plan, 20, 0, 0.3, 0.6);
+  PetscReal ball[3], drawn[3], angle;
+
+  EqmPlaceBall(plan, parameter, ball);
+  for (int k = 0; k < 3; k++) drawn[k] = 0.8 * ball[k];
+  for (PetscInt limb = 0; limb < 5; limb++) {
+    const PetscReal along = Dot(axis[limb], ball), away = Dot(ball, ball) - along * along;
+    const PetscReal length = Random(plan, limb, 1, 0.9, 1.4), width = Random(plan, limb, 2, 0.33, 0.4);
+
+    for (int k = 0; along > 0.0 && k < 3; k++) {
+      drawn[k] += length * along * along * PetscExpReal(-0.5 * away / (width * width)) * axis[limb][k];
+    }
+  }
+  angle = twist * drawn[0]; /* the limbs of one side turn forward, those of the other back */
+  position[0] = drawn[0];
+  position[1] = PetscCosReal(angle) * drawn[1] - PetscSinReal(angle) * drawn[2];
+  position[2] = PetscSinReal(angle) * drawn[1] + PetscCosReal(angle) * drawn[2];
+}

@@ -58,11 +58,7 @@ static PetscErrorCode ChooseTurns(EqmSoup soup, const EqmVicinity *vicinity, Pet
 
   PetscFunctionBegin;
   if (vicinity->cell_size == 4) {
-    for (PetscInt c = 0; c < vicinity->num_cells; c++) {
-      PetscReal quality;
-
-      turn[c] = (PetscBool)(EqmCellMeasure(vicinity, c, &quality) < 0.0);
-    }
+    for (PetscInt c = 0; c < vicinity->num_cells; c++) turn[c] = (PetscBool)(vicinity->side[c] < 0);
     PetscFunctionReturn(0);
   }
   PetscCall(PetscMalloc2(vicinity->num_cells, &label, vicinity->num_cells, &conflict));

@@ -90,9 +90,9 @@ static PetscErrorCode WriteOne(MPI_Comm comm, const char *file, void *context)
 }
 
 /* Write a result to every name in the comma-separated `files`, the format by suffix: .h5 holds everything and gets an
-   .xmf beside it; .obj .off .ply .vtu .msh .gii .stl hold the mesh with its vertices at their images (z = 0 for planar
-   maps) and, where the format can, the ratios. Each file appears whole or not at all, and one that was there survives a
-   failure. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. Collective. */
+   .xmf beside it; .obj .off .ply .vtu .vtk .msh .mesh .gii .stl hold the mesh with its vertices at their images (z = 0
+   for planar maps) and, where the format can, the ratios. Each file appears whole or not at all, and one that was there
+   survives a failure. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. Collective. */
 PetscErrorCode EqmMapWrite(EqmMap map, const char *files)
 {
   PetscFunctionBegin;

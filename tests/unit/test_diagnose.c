@@ -381,6 +381,17 @@ static PetscErrorCode TestSolids(void)
   CHECK(d.topology == EQM_SHAPE_BALL && PetscAbsReal(d.measure - 27.0) < 1e-12, "mended block, volume %g", d.measure);
   CheckNothingElse(&d, 0, NULL, __LINE__);
 
+  /* an inner vertex that went through a face: turning cells does not help */
+  draft = (Draft){0};
+  AddBlock(&draft, 3);
+  draft.vertices[3 * 21] = 2.5;
+  PetscCall(Diagnose(&draft, &d));
+  CHECK(d.finding[EQM_FINDING_INCONSISTENT_ORIENTATION].count > 0, "through a face");
+  CHECK(d.finding[EQM_FINDING_OVERLAP].count > 0, "through a face");
+  PetscCall(Mend(&draft, &repair, &d));
+  CHECK(repair.cells_flipped > 0 && d.finding[EQM_FINDING_OVERLAP].count > 0, "through a face, mended");
+  ONLY(d, EQM_FINDING_OVERLAP);
+
   draft = (Draft){0};
   AddBlock(&draft, 1);
   (void)AddVertex(&draft, 2.0, -1.0, -1.0);

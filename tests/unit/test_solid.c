@@ -1,5 +1,5 @@
 /* The distributed solid and the surface around it: orientation, stars, measures, the same surface on any number of
-   ranks, values carried there and back. */
+   ranks, values carried there and back; what repair does to a solid, and a map brought back from there. */
 #include "support/testing.h"
 
 /* Turn over the tetrahedra that `which` picks. */
@@ -183,6 +183,89 @@ static PetscErrorCode TestSurfaceHasNone(void)
   PetscFunctionReturn(0);
 }
 
+/* An octahedron of four tetrahedra around its axis, one of them inside out and one there twice. */
+static PetscErrorCode MakeOctahedron(EqmSoup *soup)
+{
+  static const PetscReal points[18] = {0., 0., 1., 0., 0., -1., 1., 0., 0., 0., 1., 0., -1., 0., 0., 0., -1., 0.};
+  static const PetscInt corners[20] = {0, 1, 3, 2, 1, 0, 4, 3, 0, 1, 5, 4, 0, 1, 2, 5, 3, 0, 2, 1};
+  EqmSerialMesh serial = {.num_vertices = 6, .num_cells = 5, .cell_size = 4};
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  if (rank == 0) {
+    PetscCall(PetscMalloc1(18, &serial.vertices));
+    PetscCall(PetscMalloc1(20, &serial.cells));
+    PetscCall(PetscArraycpy(serial.vertices, points, 18));
+    PetscCall(PetscArraycpy(serial.cells, corners, 20));
+  }
+  PetscCall(EqmSoupCreateFromRoot(PETSC_COMM_WORLD, rank == 0 ? &serial : NULL, "octahedron", soup));
+  PetscFunctionReturn(0);
+}
+
+/* What is found on the mended octahedron goes back to the cells that it was made of. */
+static PetscErrorCode CheckMappedBack(EqmSoup given, EqmSoup mended, const PetscInt *parent)
+{
+  EqmMap found, map;
+  PetscReal *weight;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMapCreate(mended, 3, &found));
+  for (PetscInt k = 0; k < 3 * (mended->vertex_end - mended->vertex_start); k++) {
+    found->coordinates[k] = 2. * mended->vertices[k];
+  }
+  PetscCall(PetscMalloc1(mended->cell_end - mended->cell_start + 1, &weight));
+  for (PetscInt c = mended->cell_start; c < mended->cell_end; c++) { /* the children of cell p: 2 p and 2 p + 1 */
+    const PetscInt place = c - mended->cell_start;
+
+    weight[place] = c % 2 ? 3. : 1.;
+    found->cell_ratio[place] = c;
+    CHECK(parent[place] == c / 2, "cell %d is a child of %d", (int)c, (int)parent[place]);
+  }
+  PetscCall(EqmMapOntoInput(found, given, parent, weight, &map));
+  for (PetscInt k = 0; k < 3 * (given->vertex_end - given->vertex_start); k++) {
+    CHECK(map->coordinates[k] == 2. * given->vertices[k], "coordinate %d", (int)k);
+  }
+  for (PetscInt c = given->cell_start; c < given->cell_end; c++) {
+    CHECK_CLOSE(map->cell_ratio[c - given->cell_start], c < 4 ? 2. * c + .75 : 1., 1e-14, 1.);
+  }
+  PetscCall(EqmMapDestroy(&map));
+  PetscCall(EqmMapDestroy(&found));
+  PetscCall(PetscFree(weight));
+  PetscFunctionReturn(0);
+}
+
+/* The axis is a chord: it is cut, and with it all tetrahedra. */
+static PetscErrorCode TestMendedSolid(void)
+{
+  EqmSoup given, mended;
+  EqmDiagnosis diagnosis;
+  const EqmFinding *const chord = &diagnosis.finding[EQM_FINDING_CHORD];
+  EqmRepair repair;
+  PetscInt *parent;
+
+  PetscFunctionBegin;
+  PetscCall(MakeOctahedron(&given));
+  PetscCall(EqmSoupDiagnose(given, &diagnosis));
+  CHECK(chord->count == 1 && chord->where[0][0] == 0 && chord->where[0][1] == 1, "%d chords", (int)chord->count);
+  CHECK(diagnosis.finding[EQM_FINDING_NO_INTERIOR_VERTEX].count == 4, "all four lie on the boundary");
+  PetscCall(EqmSoupCopy(given, &mended));
+  PetscCall(EqmSoupRepair(&mended, &repair, &parent));
+  CHECK(repair.cells_split == 4 && repair.vertices_added == 1, "%d split, %d added", (int)repair.cells_split,
+        (int)repair.vertices_added);
+  CHECK(repair.cells_flipped == 1 && repair.duplicate_cells_removed == 1, "%d turned, %d removed",
+        (int)repair.cells_flipped, (int)repair.duplicate_cells_removed);
+  PetscCall(EqmSoupDiagnose(mended, &diagnosis));
+  CHECK(diagnosis.topology == EQM_SHAPE_BALL && diagnosis.num_cells == 8, "%d cells", (int)diagnosis.num_cells);
+  for (int k = 0; k < EQM_NUM_FINDINGS; k++) CHECK(!diagnosis.finding[k].count, "finding %d is left", k);
+  CHECK_CLOSE(diagnosis.measure, 4. / 3., 1e-14, 1.);
+  PetscCall(CheckMappedBack(given, mended, parent));
+  PetscCall(PetscFree(parent));
+  PetscCall(EqmSoupDestroy(&mended));
+  PetscCall(EqmSoupDestroy(&given));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
@@ -191,6 +274,7 @@ int main(int argc, char **argv)
   PetscCall(TestSolid("blob", 700, "-partition slab", All));
   PetscCall(TestSolid("cube", 1, "-partition metis", None));
   PetscCall(TestSurfaceHasNone());
+  PetscCall(TestMendedSolid());
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
