@@ -84,25 +84,20 @@ static PetscErrorCode MakePattern(EqmAssembly assembly)
   PetscFunctionReturn(0);
 }
 
-/* The two sequential blocks of the matrix with their rows and values. */
-typedef struct {
-  Mat block[2]; /* columns of this rank, columns of others; the second NULL on one rank */
-  const PetscInt *global_column, *start[2], *column[2];
-  PetscInt num_global_columns;
-  PetscScalar *value[2];
-} Blocks;
-
-static PetscErrorCode GetBlocks(EqmAssembly assembly, Blocks *blocks)
+/* Look at the blocks of a matrix; give them back with EqmBlocksRestore. Collective. */
+PetscErrorCode EqmBlocksGet(Mat matrix, EqmBlocks *blocks)
 {
   PetscInt n;
+  PetscMPIInt size;
   PetscBool done;
 
   PetscFunctionBegin;
-  *blocks = (Blocks){0};
-  if (assembly->mesh->size == 1)
-    blocks->block[0] = assembly->matrix;
+  *blocks = (EqmBlocks){0};
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)matrix), &size));
+  if (size == 1)
+    blocks->block[0] = matrix;
   else
-    PetscCall(MatMPIAIJGetSeqAIJ(assembly->matrix, &blocks->block[0], &blocks->block[1], &blocks->global_column));
+    PetscCall(MatMPIAIJGetSeqAIJ(matrix, &blocks->block[0], &blocks->block[1], &blocks->global_column));
   for (int b = 0; b < 2 && blocks->block[b]; b++) {
     PetscCall(
         MatGetRowIJ(blocks->block[b], 0, PETSC_FALSE, PETSC_FALSE, &n, &blocks->start[b], &blocks->column[b], &done));
@@ -113,7 +108,8 @@ static PetscErrorCode GetBlocks(EqmAssembly assembly, Blocks *blocks)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RestoreBlocks(Blocks *blocks)
+/* Collective. */
+PetscErrorCode EqmBlocksRestore(EqmBlocks *blocks)
 {
   PetscInt n;
   PetscBool done;
@@ -128,8 +124,8 @@ static PetscErrorCode RestoreBlocks(Blocks *blocks)
 }
 
 /* Where (row, column) is kept. */
-static PetscErrorCode FindSlot(const Blocks *blocks, PetscInt first, PetscInt num_owned, PetscInt row, PetscInt column,
-                               PetscInt *slot)
+static PetscErrorCode FindSlot(const EqmBlocks *blocks, PetscInt first, PetscInt num_owned, PetscInt row,
+                               PetscInt column, PetscInt *slot)
 {
   const int b = column >= first && column < first + num_owned ? 0 : 1;
   PetscInt local = column - first, place;
@@ -148,11 +144,11 @@ static PetscErrorCode FindSlots(EqmAssembly assembly)
 {
   const EqmMesh mesh = assembly->mesh;
   const EqmUnknowns *const unknowns = &assembly->unknowns;
-  Blocks blocks;
+  EqmBlocks blocks;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(assembly->cell_start[mesh->num_local_cells], &assembly->slot));
-  PetscCall(GetBlocks(assembly, &blocks));
+  PetscCall(EqmBlocksGet(assembly->matrix, &blocks));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
     PetscInt list[EQM_MOST_CELL_UNKNOWNS], entry = assembly->cell_start[c];
     const PetscInt n = CellUnknowns(mesh, unknowns, c, list);
@@ -162,7 +158,7 @@ static PetscErrorCode FindSlots(EqmAssembly assembly)
           FindSlot(&blocks, unknowns->first, unknowns->num_owned, list[k / n], list[k % n], &assembly->slot[entry++]));
     }
   }
-  PetscCall(RestoreBlocks(&blocks));
+  PetscCall(EqmBlocksRestore(&blocks));
   PetscFunctionReturn(0);
 }
 
@@ -196,7 +192,7 @@ PetscErrorCode EqmAssemblyDestroy(EqmAssembly *assembly)
 }
 
 /* Clear the rows of one block of vertices. The unknowns of consecutive vertices are consecutive. */
-static void ClearRows(const EqmAssembly assembly, const Blocks *blocks, PetscInt b)
+static void ClearRows(const EqmAssembly assembly, const EqmBlocks *blocks, PetscInt b)
 {
   const EqmUnknowns *const u = &assembly->unknowns;
   const PetscInt from = assembly->mesh->block_vertex[b], to = assembly->mesh->block_vertex[b + 1];
@@ -209,7 +205,7 @@ static void ClearRows(const EqmAssembly assembly, const Blocks *blocks, PetscInt
 }
 
 /* Add a cell's matrix to the rows of the vertices from .. to - 1. */
-static void AddCell(const EqmAssembly assembly, const Blocks *blocks, PetscInt cell, const PetscReal *matrix,
+static void AddCell(const EqmAssembly assembly, const EqmBlocks *blocks, PetscInt cell, const PetscReal *matrix,
                     PetscInt from, PetscInt to)
 {
   const EqmMesh mesh = assembly->mesh;
@@ -236,11 +232,11 @@ static void AddCell(const EqmAssembly assembly, const Blocks *blocks, PetscInt c
 PetscErrorCode EqmAssemblyFill(EqmAssembly assembly, EqmCellMatrix cell_matrix, void *context)
 {
   const EqmMesh mesh = assembly->mesh;
-  Blocks blocks;
+  EqmBlocks blocks;
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_ASSEMBLE));
-  PetscCall(GetBlocks(assembly, &blocks));
+  PetscCall(EqmBlocksGet(assembly->matrix, &blocks));
 #pragma omp parallel for schedule(static)
   for (PetscInt b = 0; b < mesh->num_blocks; b++) {
     PetscReal matrix[EQM_MOST_CELL_UNKNOWNS * EQM_MOST_CELL_UNKNOWNS];
@@ -250,7 +246,7 @@ PetscErrorCode EqmAssemblyFill(EqmAssembly assembly, EqmCellMatrix cell_matrix, 
       AddCell(assembly, &blocks, mesh->block_cell[q], matrix, mesh->block_vertex[b], mesh->block_vertex[b + 1]);
     }
   }
-  PetscCall(RestoreBlocks(&blocks));
+  PetscCall(EqmBlocksRestore(&blocks));
   PetscCall(MatAssemblyBegin(assembly->matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(assembly->matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_ASSEMBLE));

@@ -1,13 +1,7 @@
 /* CHOLMOD on one rank. Our lower triangle by rows is the upper triangle by columns that CHOLMOD reads in place. */
 #include "linalg/linalg.h"
-#include <cholmod.h>
+#include "linalg/cholmod_name.h"
 #include <omp.h>
-
-#if defined(PETSC_USE_64BIT_INDICES)
-#define CHOLMOD(name) cholmod_l_##name
-#else
-#define CHOLMOD(name) cholmod_##name
-#endif
 
 typedef struct {
   cholmod_common common;
@@ -59,15 +53,18 @@ static PetscErrorCode RestoreView(EqmLinear linear, Mat matrix)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
+static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
 {
   Cholmod *const c = linear->data;
-  PetscInt *order;
+  PetscInt *position, *order;
   Mat matrix;
 
   PetscFunctionBegin;
+  PetscCall(EqmOrderingOfUnknowns(ordering, &linear->unknowns, &position));
+  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscCall(PetscMalloc1(linear->num_unknowns, &order));
   for (PetscInt k = 0; k < linear->num_unknowns; k++) order[position[k]] = k;
+  PetscCall(PetscFree(position));
   PetscCall(GetView(linear, &matrix));
   c->common.nmethods = 1;
   c->common.method[0].ordering = CHOLMOD_GIVEN;
@@ -79,6 +76,7 @@ static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
              c->common.status);
   linear->factor_nonzeros = c->common.lnz;
   linear->factor_flops = c->common.fl;
+  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscFunctionReturn(0);
 }
 

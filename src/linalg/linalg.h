@@ -29,6 +29,16 @@ PETSC_INTERN PetscErrorCode EqmAssemblyDestroy(EqmAssembly *assembly);
 PETSC_INTERN PetscErrorCode EqmAssemblyFill(EqmAssembly assembly, EqmCellMatrix cell_matrix, void *context);
 PETSC_INTERN PetscErrorCode EqmAssemblyGetMat(EqmAssembly assembly, Mat *matrix);
 
+/* The two sequential blocks of a matrix, as compressed rows with their values. */
+typedef struct {
+  Mat block[2]; /* columns of this rank, columns of others; the second NULL on one rank */
+  const PetscInt *global_column, *start[2], *column[2];
+  PetscInt num_global_columns; /* global_column: of the second block's columns, ascending */
+  PetscScalar *value[2];
+} EqmBlocks;
+PETSC_INTERN PetscErrorCode EqmBlocksGet(Mat matrix, EqmBlocks *blocks);
+PETSC_INTERN PetscErrorCode EqmBlocksRestore(EqmBlocks *blocks);
+
 /* ---- fill-reducing order of the vertices, by METIS, made once for a mesh and shared by all its matrices */
 typedef struct _p_EqmOrdering *EqmOrdering;
 PETSC_INTERN PetscErrorCode EqmOrderingCreate(EqmMesh mesh, EqmOrdering *ordering);
@@ -38,8 +48,28 @@ PETSC_INTERN PetscErrorCode EqmOrderingDestroy(EqmOrdering *ordering);
 PETSC_INTERN PetscErrorCode EqmOrderingOfUnknowns(EqmOrdering ordering, const EqmUnknowns *unknowns,
                                                   PetscInt **position);
 
+/* How the ranks' shares of the mesh fall apart: without the separators no cell has vertices of two ranks. */
+typedef struct {
+  PetscInt num_inner, *inner;       /* owned vertices that are no separators, in elimination order */
+  PetscInt num_separators, *vertex; /* separators among the local vertices, ghosts too, by global number */
+  PetscInt *span;                   /* per separator: lowest and highest rank that sees it */
+  PetscInt *links;                  /* per owned separator: separators that share a cell with it, itself included */
+} EqmSeparation;
+/* Made at the first call and kept by the ordering. Collective. */
+PETSC_INTERN PetscErrorCode EqmOrderingGetSeparation(EqmOrdering ordering, const EqmSeparation **separation);
+PETSC_INTERN PetscErrorCode EqmSeparationCreate(EqmMesh mesh, EqmSeparation **separation);
+PETSC_INTERN PetscErrorCode EqmSeparationDestroy(EqmSeparation **separation);
+/* Nested dissection of a graph: `order[k]` is eliminated as the k-th. Degrees become starts. Not collective. */
+PETSC_INTERN PetscErrorCode EqmDissect(PetscInt n, PetscInt *degree_then_start, PetscInt *neighbor, PetscInt *order);
+
 /* ---- solvers */
-typedef enum { EQM_SOLVER_AUTO, EQM_SOLVER_CHOLMOD, EQM_SOLVER_MUMPS, EQM_SOLVER_MULTIGRID } EqmSolverKind;
+typedef enum {
+  EQM_SOLVER_AUTO,
+  EQM_SOLVER_CHOLMOD,
+  EQM_SOLVER_SUBSTRUCTURE,
+  EQM_SOLVER_MUMPS,
+  EQM_SOLVER_MULTIGRID
+} EqmSolverKind;
 PETSC_INTERN const char *const EqmSolverKinds[];
 
 /* A solver for one symmetric positive definite matrix whose values change and whose pattern stays. */
@@ -53,7 +83,7 @@ struct _p_EqmLinear {
   EqmAssembly assembly;
   PetscReal factor_nonzeros, factor_flops; /* of the last factorisation; 0 while unknown */
   void *data;
-  PetscErrorCode (*analyse)(EqmLinear, const PetscInt *position);
+  PetscErrorCode (*analyse)(EqmLinear, EqmOrdering);
   PetscErrorCode (*factor)(EqmLinear, PetscBool *success);
   PetscErrorCode (*solve)(EqmLinear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
   PetscErrorCode (*destroy)(EqmLinear);
@@ -68,6 +98,7 @@ PETSC_INTERN PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, c
 
 /* The kinds fill in the operations. */
 PETSC_INTERN PetscErrorCode EqmLinearSetUpCholmod(EqmLinear linear);
+PETSC_INTERN PetscErrorCode EqmLinearSetUpSubstructure(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpMumps(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpMultigrid(EqmLinear linear);
 

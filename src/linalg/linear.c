@@ -1,7 +1,8 @@
 /* One face for the direct solvers and multigrid. */
 #include "linalg/linalg.h"
 
-const char *const EqmSolverKinds[] = {"auto", "cholmod", "mumps", "multigrid", "EqmSolverKind", "EQM_SOLVER_", NULL};
+const char *const EqmSolverKinds[] = {"auto",      "cholmod",       "substructure", "mumps",
+                                      "multigrid", "EqmSolverKind", "EQM_SOLVER_",  NULL};
 
 /* In the plane and on surfaces an exact Cholesky factor beats multigrid at every size that fits in memory; on one rank
    CHOLMOD solves two to three times faster than MUMPS, on several MUMPS is the one that works. */
@@ -12,7 +13,8 @@ static PetscErrorCode ChooseKind(EqmLinear linear)
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetEnum(NULL, NULL, "-linear_solver", EqmSolverKinds, &kind, NULL));
   linear->kind = (EqmSolverKind)kind;
-  if (linear->kind == EQM_SOLVER_AUTO) linear->kind = linear->mesh->size == 1 ? EQM_SOLVER_CHOLMOD : EQM_SOLVER_MUMPS;
+  if (linear->kind == EQM_SOLVER_AUTO)
+    linear->kind = linear->mesh->size == 1 ? EQM_SOLVER_CHOLMOD : EQM_SOLVER_SUBSTRUCTURE;
   if (linear->kind == EQM_SOLVER_CHOLMOD && linear->mesh->size > 1) {
     EqmFail(linear->mesh->comm, EQM_ERR_USAGE,
             "-linear_solver cholmod works on one rank only; on several take mumps or multigrid");
@@ -25,7 +27,6 @@ PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnkn
                                EqmLinear *out)
 {
   EqmLinear linear;
-  PetscInt *position = NULL;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&linear));
@@ -43,17 +44,16 @@ PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnkn
   case EQM_SOLVER_CHOLMOD:
     PetscCall(EqmLinearSetUpCholmod(linear));
     break;
+  case EQM_SOLVER_SUBSTRUCTURE:
+    PetscCall(EqmLinearSetUpSubstructure(linear));
+    break;
   case EQM_SOLVER_MUMPS:
     PetscCall(EqmLinearSetUpMumps(linear));
     break;
   default:
     PetscCall(EqmLinearSetUpMultigrid(linear));
   }
-  if (linear->kind != EQM_SOLVER_MULTIGRID) PetscCall(EqmOrderingOfUnknowns(ordering, unknowns, &position));
-  PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_FACTOR));
-  PetscCall(linear->analyse(linear, position));
-  PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_FACTOR));
-  PetscCall(PetscFree(position));
+  PetscCall(linear->analyse(linear, ordering));
   *out = linear;
   PetscFunctionReturn(0);
 }

@@ -7,7 +7,7 @@ typedef struct {
   Vec b, x;
 } Multigrid;
 
-static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
+static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
 {
   Multigrid *const g = linear->data;
   Mat matrix;

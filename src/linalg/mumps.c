@@ -58,10 +58,11 @@ static PetscErrorCode TakeMatrix(EqmLinear linear, PetscBool places)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
+static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
 {
   Mumps *const m = linear->data;
   MUMPS_INT *pivot = NULL;
+  PetscInt *position;
   MatInfo info;
   Mat matrix;
 
@@ -75,6 +76,8 @@ static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
   m->id.irn_loc = m->row;
   m->id.jcn_loc = m->column;
   PetscCall(TakeMatrix(linear, PETSC_TRUE));
+  PetscCall(EqmOrderingOfUnknowns(ordering, &linear->unknowns, &position));
+  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
   if (linear->mesh->rank == 0) {
     PetscCall(PetscMalloc1(linear->num_unknowns, &pivot));
     for (PetscInt k = 0; k < linear->num_unknowns; k++) pivot[k] = (MUMPS_INT)(position[k] + 1);
@@ -82,6 +85,7 @@ static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
   }
   PetscCall(Call(linear, JOB_ANALYSE));
   PetscCall(PetscFree(pivot));
+  PetscCall(PetscFree(position));
   m->id.perm_in = NULL;
   PetscCheck(m->id.INFOG(1) >= 0, linear->mesh->comm, PETSC_ERR_LIB,
              "MUMPS' analysis failed: INFOG(1) = %d, INFOG(2) = %d", m->id.INFOG(1), m->id.INFOG(2));
@@ -89,6 +93,7 @@ static PetscErrorCode Analyse(EqmLinear linear, const PetscInt *position)
              "MUMPS ignored the ordering it was given (INFOG(7) = %d)", m->id.INFOG(7));
   linear->factor_nonzeros = m->id.INFOG(3) < 0 ? -1e6 * m->id.INFOG(3) : m->id.INFOG(3);
   linear->factor_flops = m->id.RINFOG(1);
+  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
 
   PetscCall(PetscMalloc1(linear->num_owned, &m->rhs_row));
   for (PetscInt k = 0; k < linear->num_owned; k++) m->rhs_row[k] = (MUMPS_INT)(linear->unknowns.first + k + 1);

@@ -6,7 +6,9 @@
 
 struct _p_EqmOrdering {
   EqmMesh mesh;
-  PetscInt *order; /* rank 0: the k-th vertex (global number) to eliminate */
+  PetscInt *order; /* rank 0: the k-th vertex (global number) to eliminate; made at the first need */
+  PetscBool ordered;
+  EqmSeparation *separation; /* made at the first need */
 };
 
 /* Counts of every rank and their offsets, for gathers to rank 0. */
@@ -37,7 +39,7 @@ static PetscErrorCode GatherInts(EqmMesh mesh, PetscInt n, const PetscInt *mine,
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Dissect(PetscInt n, PetscInt *degree_then_start, PetscInt *neighbor, PetscInt *order)
+PetscErrorCode EqmDissect(PetscInt n, PetscInt *degree_then_start, PetscInt *neighbor, PetscInt *order)
 {
   PetscInt *inverse, sum = 0;
   idx_t num_rows = (idx_t)n;
@@ -50,26 +52,27 @@ static PetscErrorCode Dissect(PetscInt n, PetscInt *degree_then_start, PetscInt 
     sum += degree;
   }
   degree_then_start[n] = sum;
+  if (sum == 0) { /* nothing to dissect */
+    for (PetscInt i = 0; i < n; i++) order[i] = i;
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscMalloc1(n, &inverse));
-  result = n ? METIS_NodeND(&num_rows, (idx_t *)degree_then_start, (idx_t *)neighbor, NULL, NULL, (idx_t *)order,
-                            (idx_t *)inverse)
-             : METIS_OK;
+  result = METIS_NodeND(&num_rows, (idx_t *)degree_then_start, (idx_t *)neighbor, NULL, NULL, (idx_t *)order,
+                        (idx_t *)inverse);
   PetscCheck(result == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_NodeND failed with code %d", result);
   PetscCall(PetscFree(inverse));
   PetscFunctionReturn(0);
 }
 
-/* Order the vertices of the mesh. METIS is serial: the graph visits rank 0 for the time of the call. Collective. */
-PetscErrorCode EqmOrderingCreate(EqmMesh mesh, EqmOrdering *out)
+/* Order the vertices of the whole mesh. METIS is serial: the graph visits rank 0 for the time of the call. */
+static PetscErrorCode OrderAll(EqmOrdering ordering)
 {
-  EqmOrdering ordering;
+  const EqmMesh mesh = ordering->mesh;
   EqmGraph graph;
   PetscInt *degree, *all_degrees, *all_neighbors, n, num_edges;
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_PARTITION));
-  PetscCall(PetscNew(&ordering));
-  ordering->mesh = mesh;
   PetscCall(EqmGraphOfCells(mesh->num_owned, mesh->cell_size, mesh->num_local_cells, mesh->cells, &graph));
   PetscCall(PetscMalloc1(mesh->num_owned, &degree));
   for (PetscInt i = 0; i < mesh->num_owned; i++) degree[i] = graph.start[i + 1] - graph.start[i];
@@ -80,12 +83,31 @@ PetscErrorCode EqmOrderingCreate(EqmMesh mesh, EqmOrdering *out)
   PetscCall(EqmGraphReset(&graph));
   if (mesh->rank == 0) {
     PetscCall(PetscMalloc1(n, &ordering->order));
-    PetscCall(Dissect(n, all_degrees, all_neighbors, ordering->order));
+    PetscCall(EqmDissect(n, all_degrees, all_neighbors, ordering->order));
   }
   PetscCall(PetscFree(all_degrees));
   PetscCall(PetscFree(all_neighbors));
+  ordering->ordered = PETSC_TRUE;
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_PARTITION));
-  *out = ordering;
+  PetscFunctionReturn(0);
+}
+
+/* Orders are made when they are first asked for. Not collective. */
+PetscErrorCode EqmOrderingCreate(EqmMesh mesh, EqmOrdering *out)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscNew(out));
+  (*out)->mesh = mesh;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmOrderingGetSeparation(EqmOrdering ordering, const EqmSeparation **separation)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmEventBegin(ordering->mesh->ledger, EQM_EVENT_PARTITION));
+  if (!ordering->separation) PetscCall(EqmSeparationCreate(ordering->mesh, &ordering->separation));
+  PetscCall(EqmEventEnd(ordering->mesh->ledger, EQM_EVENT_PARTITION));
+  *separation = ordering->separation;
   PetscFunctionReturn(0);
 }
 
@@ -95,6 +117,7 @@ PetscErrorCode EqmOrderingDestroy(EqmOrdering *ordering)
   PetscFunctionBegin;
   if (!*ordering) PetscFunctionReturn(0);
   PetscCall(PetscFree((*ordering)->order));
+  PetscCall(EqmSeparationDestroy(&(*ordering)->separation));
   PetscCall(PetscFree(*ordering));
   PetscFunctionReturn(0);
 }
@@ -105,6 +128,7 @@ PetscErrorCode EqmOrderingOfUnknowns(EqmOrdering ordering, const EqmUnknowns *un
   PetscInt *pair, *all, num_all;
 
   PetscFunctionBegin;
+  if (!ordering->ordered) PetscCall(OrderAll(ordering));
   PetscCall(PetscMalloc1(2 * mesh->num_owned, &pair));
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
     pair[2 * v] = unknowns->start[v];

@@ -206,6 +206,7 @@ static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, Pe
   PetscCall(EqmOrderingCreate(mesh, &ordering));
   PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver auto"));
   PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver mumps"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver substructure"));
   PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver multigrid"));
   if (mesh->size == 1)
     PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver cholmod"));

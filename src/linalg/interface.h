@@ -1,0 +1,28 @@
+/* The dense end of substructuring: what is left when every rank has eliminated the unknowns that it alone knows. */
+#ifndef EQM_INTERFACE_H
+#define EQM_INTERFACE_H
+
+#include <petscsys.h>
+
+/* Cholesky of a sum of dense matrices, one per rank, over a fixed binary tree of the ranks: neighbours in rank merge
+   their matrices into a front, eliminate the unknowns that no rank outside shares, and pass the rest on. Which numbers
+   are added in which order depends on the tree alone, never on who is first to finish. */
+typedef struct _p_EqmInterface *EqmInterface;
+
+/* `unknown`: global numbers of the unknowns that this rank shares, each once, in any order; `span`: per unknown the
+   lowest and the highest rank that has it. Collective. */
+PETSC_INTERN PetscErrorCode EqmInterfaceCreate(MPI_Comm comm, PetscInt num_shared, const PetscInt *unknown,
+                                               const PetscInt *span, EqmInterface *tree);
+PETSC_INTERN PetscErrorCode EqmInterfaceDestroy(EqmInterface *tree);
+/* Unknowns of the largest front on any rank; bytes that this rank needs at most at once, floating-point operations of
+   its fronts. Collective. */
+PETSC_INTERN PetscErrorCode EqmInterfaceGetCost(EqmInterface tree, PetscInt *largest, PetscReal *bytes,
+                                                PetscReal *flops);
+/* Factor the sum of the ranks' matrices: `share` is this rank's, by columns, of which the lower triangle counts, in the
+   order of `unknown`; it is freed. `success` is false on every rank if the sum is not positive definite. Collective. */
+PETSC_INTERN PetscErrorCode EqmInterfaceFactor(EqmInterface tree, PetscScalar **share, PetscBool *success);
+/* Solve with the sum of the ranks' right-hand sides: columns of num_shared on entry, on return the solution at them.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmInterfaceSolve(EqmInterface tree, PetscInt num_rhs, PetscScalar *columns);
+
+#endif
