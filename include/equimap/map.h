@@ -5,6 +5,9 @@
 
 #include <equimap/soup.h>
 
+/* Longest description of a linear solver, terminating zero included. */
+#define EQM_LINEAR_TEXT 192
+
 typedef struct {
   PetscReal mean, sd, min, max, p25, p50, p75, p95;
 } EqmStatistics;
@@ -55,6 +58,7 @@ struct _p_EqmMap {
   EqmStatus status;
   char message[EQM_MESSAGE_MAX]; /* how the run ended, in plain words */
   char command[64], method[64];
+  char linear_solver[EQM_LINEAR_TEXT]; /* what solved with matrices, and what it took */
   PetscInt ranks, threads;
   PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS], total_seconds;
   PetscInt64 memory_max_per_rank, memory_total, num_boundary_vertices;

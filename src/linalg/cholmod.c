@@ -53,6 +53,20 @@ static PetscErrorCode RestoreView(EqmLinear linear, Mat matrix)
   PetscFunctionReturn(0);
 }
 
+/* Add what a supernodal factor takes, from its symbolic half: blocks and their rows, the largest update block, a
+   permuted copy of the matrix, vectors. Not collective. */
+void EqmEstimateCholmod(const cholmod_factor *factor, const cholmod_common *common, EqmEstimate *estimate)
+{
+  enum { VECTORS = 12 }; /* three right-hand sides, their solutions and CHOLMOD's work spaces */
+
+  estimate->nonzeros += common->lnz;
+  estimate->flops += common->fl;
+  estimate->bytes_on_rank += (PetscReal)sizeof(PetscScalar) * ((PetscReal)factor->xsize + (PetscReal)factor->maxcsize +
+                                                               VECTORS * (PetscReal)factor->n) +
+                             (PetscReal)sizeof(PetscInt) * (PetscReal)factor->ssize +
+                             2. * (PetscReal)(sizeof(PetscScalar) + sizeof(PetscInt)) * common->anz;
+}
+
 static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
 {
   Cholmod *const c = linear->data;
@@ -74,8 +88,7 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
   PetscCheck(c->factor, PETSC_COMM_SELF, PETSC_ERR_MEM,
              "CHOLMOD's analysis failed (status %d): too little memory for this mesh on one rank; use more",
              c->common.status);
-  linear->factor_nonzeros = c->common.lnz;
-  linear->factor_flops = c->common.fl;
+  EqmEstimateCholmod(c->factor, &c->common, &linear->estimate);
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscFunctionReturn(0);
 }

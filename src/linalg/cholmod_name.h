@@ -1,8 +1,8 @@
-/* CHOLMOD's functions for PETSc's width of integers. */
+/* CHOLMOD's functions for PETSc's width of integers, and what its two users share. */
 #ifndef EQM_CHOLMOD_NAME_H
 #define EQM_CHOLMOD_NAME_H
 
-#include <petscsys.h>
+#include "linalg/linalg.h"
 #include <cholmod.h>
 
 #if defined(PETSC_USE_64BIT_INDICES)
@@ -10,5 +10,7 @@
 #else
 #define CHOLMOD(name) cholmod_##name
 #endif
+
+PETSC_INTERN void EqmEstimateCholmod(const cholmod_factor *factor, const cholmod_common *common, EqmEstimate *estimate);
 
 #endif

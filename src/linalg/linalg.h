@@ -72,6 +72,16 @@ typedef enum {
 } EqmSolverKind;
 PETSC_INTERN const char *const EqmSolverKinds[];
 
+/* What a factorisation takes, known before there are numbers; zero for multigrid. */
+typedef struct {
+  PetscReal nonzeros, flops; /* of the factor, all ranks together */
+  PetscReal bytes_on_rank;   /* on this rank at most at once: factor, fronts and work space, not the matrix itself */
+  PetscReal most_bytes_on_rank, bytes; /* of the rank that needs most; of all */
+  PetscInt largest_front;              /* substructuring: unknowns of the largest dense matrix */
+} EqmEstimate;
+/* Bytes that this rank may use for factors. Option: -memory_limit. Collective. */
+PETSC_INTERN PetscErrorCode EqmMemoryLimit(MPI_Comm comm, PetscReal *bytes);
+
 /* A solver for one symmetric positive definite matrix whose values change and whose pattern stays. */
 typedef struct _p_EqmLinear *EqmLinear;
 struct _p_EqmLinear {
@@ -81,7 +91,7 @@ struct _p_EqmLinear {
   PetscInt num_owned, num_unknowns;
   EqmUnknowns unknowns;
   EqmAssembly assembly;
-  PetscReal factor_nonzeros, factor_flops; /* of the last factorisation; 0 while unknown */
+  EqmEstimate estimate;
   void *data;
   PetscErrorCode (*analyse)(EqmLinear, EqmOrdering);
   PetscErrorCode (*factor)(EqmLinear, PetscBool *success);
@@ -89,8 +99,13 @@ struct _p_EqmLinear {
   PetscErrorCode (*destroy)(EqmLinear);
 };
 
+/* Ask for the options of linear solvers, with help: -linear_solver, -memory_limit. */
+PETSC_INTERN PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject);
 PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
                                             PetscBool coupled, EqmLinear *linear);
+PETSC_INTERN PetscErrorCode EqmLinearEstimate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
+                                              EqmEstimate *estimate, PetscBool *fits);
+PETSC_INTERN PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmLinearDestroy(EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context,
                                             PetscReal diagonal_factor, PetscBool *success);

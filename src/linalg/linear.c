@@ -4,43 +4,53 @@
 const char *const EqmSolverKinds[] = {"auto",      "cholmod",       "substructure", "mumps",
                                       "multigrid", "EqmSolverKind", "EQM_SOLVER_",  NULL};
 
-/* In the plane and on surfaces an exact Cholesky factor beats multigrid at every size that fits in memory; on one rank
-   CHOLMOD solves two to three times faster than MUMPS, on several MUMPS is the one that works. */
-static PetscErrorCode ChooseKind(EqmLinear linear)
+/* Larger fronts take half a gigabyte on one rank, and minutes that the other ranks wait. */
+enum { MOST_FRONT = 8000 };
+static const PetscReal gib = 1024. * 1024. * 1024.;
+
+PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject)
 {
   PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
+  PetscReal limit = 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetEnum(NULL, NULL, "-linear_solver", EqmSolverKinds, &kind, NULL));
-  linear->kind = (EqmSolverKind)kind;
-  if (linear->kind == EQM_SOLVER_AUTO)
-    linear->kind = linear->mesh->size == 1 ? EQM_SOLVER_CHOLMOD : EQM_SOLVER_SUBSTRUCTURE;
-  if (linear->kind == EQM_SOLVER_CHOLMOD && linear->mesh->size > 1) {
-    EqmFail(linear->mesh->comm, EQM_ERR_USAGE,
-            "-linear_solver cholmod works on one rank only; on several take mumps or multigrid");
-  }
+  PetscCall(PetscOptionsEnum("-linear_solver",
+                             "what solves with matrices; substructure and mumps are for several ranks, cholmod for one",
+                             "EqmLinearCreate", EqmSolverKinds, kind, &kind, NULL));
+  PetscCall(
+      PetscOptionsReal("-memory_limit",
+                       "at most so many GiB per rank for factors; beyond, -linear_solver auto iterates (0: most of "
+                       "what is free)",
+                       "EqmLinearCreate", limit, &limit, NULL));
+  if (!(limit >= 0.))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-memory_limit %g: give a number of GiB, 0 for what is free",
+            (double)limit);
   PetscFunctionReturn(0);
 }
 
-/* A solver for matrices with the given unknowns (whose arrays must outlive it). Option: -linear_solver. Collective. */
-PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled,
-                               EqmLinear *out)
+/* Undo what Try has done. */
+static PetscErrorCode Release(EqmLinear linear)
 {
-  EqmLinear linear;
+  PetscFunctionBegin;
+  PetscCall(linear->destroy(linear));
+  PetscCall(EqmAssemblyDestroy(&linear->assembly));
+  PetscFunctionReturn(0);
+}
+
+/* Make a solver of one kind, up to what it knows before it sees numbers. */
+static PetscErrorCode Try(EqmLinear linear, EqmOrdering ordering, EqmSolverKind kind)
+{
+  EqmEstimate *const e = &linear->estimate;
+  PetscReal mine;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&linear));
-  linear->mesh = mesh;
-  linear->coupled = coupled;
-  linear->unknowns = *unknowns;
-  linear->num_owned = unknowns->num_owned;
-  PetscCall(MPIU_Allreduce(&linear->num_owned, &linear->num_unknowns, 1, MPIU_INT, MPI_SUM, mesh->comm));
-  PetscCall(ChooseKind(linear));
-  PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_ASSEMBLE));
-  PetscCall(EqmAssemblyCreate(mesh, unknowns, linear->kind == EQM_SOLVER_MULTIGRID ? EQM_STORE_FULL : EQM_STORE_LOWER,
-                              &linear->assembly));
-  PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_ASSEMBLE));
-  switch (linear->kind) {
+  linear->kind = kind;
+  *e = (EqmEstimate){0};
+  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_ASSEMBLE));
+  PetscCall(EqmAssemblyCreate(linear->mesh, &linear->unknowns,
+                              kind == EQM_SOLVER_MULTIGRID ? EQM_STORE_FULL : EQM_STORE_LOWER, &linear->assembly));
+  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_ASSEMBLE));
+  switch (kind) {
   case EQM_SOLVER_CHOLMOD:
     PetscCall(EqmLinearSetUpCholmod(linear));
     break;
@@ -54,7 +64,135 @@ PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnkn
     PetscCall(EqmLinearSetUpMultigrid(linear));
   }
   PetscCall(linear->analyse(linear, ordering));
-  *out = linear;
+  mine = e->bytes_on_rank;
+  PetscCall(MPIU_Allreduce(&mine, &e->bytes, 1, MPIU_REAL, MPIU_SUM, linear->mesh->comm));
+  PetscCall(MPIU_Allreduce(&mine, &e->most_bytes_on_rank, 1, MPIU_REAL, MPIU_MAX, linear->mesh->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Has every rank the memory? */
+static PetscErrorCode FitsInMemory(EqmLinear linear, PetscReal limit, PetscBool *fits)
+{
+  const PetscBool mine = (PetscBool)(linear->estimate.bytes_on_rank <= limit);
+
+  PetscFunctionBegin;
+  PetscCall(MPIU_Allreduce(&mine, fits, 1, MPIU_BOOL, MPI_LAND, linear->mesh->comm));
+  PetscFunctionReturn(0);
+}
+
+/* In the plane and on surfaces an exact Cholesky factor beats multigrid at every size that fits in memory. On one rank
+   CHOLMOD solves two to three times faster than MUMPS; on several it eliminates what is inside each rank, which also
+   gives the same bits in every run, as long as what is left between the ranks is no burden. */
+static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal limit)
+{
+  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD, EQM_SOLVER_MULTIGRID},
+                             together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS, EQM_SOLVER_MULTIGRID};
+  const EqmSolverKind *const kinds = linear->mesh->size == 1 ? alone : together;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0;; k++) {
+    PetscBool fits;
+    PetscCall(Try(linear, ordering, kinds[k]));
+    PetscCall(FitsInMemory(linear, limit, &fits));
+    if (kinds[k] == EQM_SOLVER_MULTIGRID || (fits && linear->estimate.largest_front <= MOST_FRONT)) break;
+    PetscCall(Release(linear));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The user's choice. */
+static PetscErrorCode Obey(EqmLinear linear, EqmOrdering ordering, EqmSolverKind kind, PetscReal limit)
+{
+  const MPI_Comm comm = linear->mesh->comm;
+  PetscBool fits;
+
+  PetscFunctionBegin;
+  if (kind == EQM_SOLVER_CHOLMOD && linear->mesh->size > 1) {
+    EqmFail(comm, EQM_ERR_USAGE,
+            "-linear_solver cholmod works on one rank only; on several take substructure, mumps or multigrid");
+  }
+  PetscCall(Try(linear, ordering, kind));
+  PetscCall(FitsInMemory(linear, limit, &fits));
+  if (!fits) {
+    EqmFail(comm, EQM_ERR_USAGE,
+            "-linear_solver %s would take %.3g GiB on a rank, of %.3g GiB that it may use; give more ranks or nodes, "
+            "-linear_solver multigrid, or a larger -memory_limit",
+            EqmSolverKinds[kind], (double)(linear->estimate.most_bytes_on_rank / gib), (double)(limit / gib));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, PetscBool coupled, EqmLinear *linear)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscNew(linear));
+  (*linear)->mesh = mesh;
+  (*linear)->coupled = coupled;
+  (*linear)->unknowns = *unknowns;
+  (*linear)->num_owned = unknowns->num_owned;
+  PetscCall(MPIU_Allreduce(&unknowns->num_owned, &(*linear)->num_unknowns, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscFunctionReturn(0);
+}
+
+/* A solver for matrices with the given unknowns (whose arrays must outlive it). Options: -linear_solver, -memory_limit.
+   Errors: EQM_ERR_USAGE if the solver asked for does not fit. Collective. */
+PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled,
+                               EqmLinear *out)
+{
+  PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
+  PetscReal limit;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetEnum(NULL, NULL, "-linear_solver", EqmSolverKinds, &kind, NULL));
+  PetscCall(EqmMemoryLimit(mesh->comm, &limit));
+  PetscCall(Begin(mesh, unknowns, coupled, out));
+  if ((EqmSolverKind)kind == EQM_SOLVER_AUTO)
+    PetscCall(Choose(*out, ordering, limit));
+  else
+    PetscCall(Obey(*out, ordering, (EqmSolverKind)kind, limit));
+  PetscFunctionReturn(0);
+}
+
+/* What an exact factorisation would take, and whether every rank has the memory; nothing is factored. Collective. */
+PetscErrorCode EqmLinearEstimate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, EqmEstimate *estimate,
+                                 PetscBool *fits)
+{
+  EqmLinear linear;
+  PetscReal limit;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMemoryLimit(mesh->comm, &limit));
+  PetscCall(Begin(mesh, unknowns, PETSC_TRUE, &linear));
+  PetscCall(Try(linear, ordering, mesh->size == 1 ? EQM_SOLVER_CHOLMOD : EQM_SOLVER_SUBSTRUCTURE));
+  if (linear->estimate.largest_front > MOST_FRONT) {
+    PetscCall(Release(linear));
+    PetscCall(Try(linear, ordering, EQM_SOLVER_MUMPS));
+  }
+  PetscCall(FitsInMemory(linear, limit, fits));
+  *estimate = linear->estimate;
+  PetscCall(EqmLinearDestroy(&linear));
+  PetscFunctionReturn(0);
+}
+
+/* One line on what solves and what it takes. Not collective. */
+PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length)
+{
+  const EqmEstimate *const e = &linear->estimate;
+  char between[64] = "";
+
+  PetscFunctionBegin;
+  if (linear->kind == EQM_SOLVER_MULTIGRID) {
+    PetscCall(PetscSNPrintf(text, length, "multigrid (%" PetscInt_FMT " unknowns)", linear->num_unknowns));
+    PetscFunctionReturn(0);
+  }
+  if (linear->kind == EQM_SOLVER_SUBSTRUCTURE)
+    PetscCall(PetscSNPrintf(between, sizeof(between), ", largest front %" PetscInt_FMT, e->largest_front));
+  PetscCall(PetscSNPrintf(text, length,
+                          "%s (%" PetscInt_FMT
+                          " unknowns%s, factor of %.3g nonzeros, %.3g operations, at most %.3g GiB "
+                          "per rank)",
+                          EqmSolverKinds[linear->kind], linear->num_unknowns, between, (double)e->nonzeros,
+                          (double)e->flops, (double)(e->most_bytes_on_rank / gib)));
   PetscFunctionReturn(0);
 }
 
@@ -63,8 +201,7 @@ PetscErrorCode EqmLinearDestroy(EqmLinear *linear)
 {
   PetscFunctionBegin;
   if (!*linear) PetscFunctionReturn(0);
-  PetscCall((*linear)->destroy(*linear));
-  PetscCall(EqmAssemblyDestroy(&(*linear)->assembly));
+  PetscCall(Release(*linear));
   PetscCall(PetscFree(*linear));
   PetscFunctionReturn(0);
 }

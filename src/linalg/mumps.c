@@ -91,8 +91,9 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
              "MUMPS' analysis failed: INFOG(1) = %d, INFOG(2) = %d", m->id.INFOG(1), m->id.INFOG(2));
   PetscCheck(m->id.INFOG(7) == 1, linear->mesh->comm, PETSC_ERR_LIB,
              "MUMPS ignored the ordering it was given (INFOG(7) = %d)", m->id.INFOG(7));
-  linear->factor_nonzeros = m->id.INFOG(3) < 0 ? -1e6 * m->id.INFOG(3) : m->id.INFOG(3);
-  linear->factor_flops = m->id.RINFOG(1);
+  linear->estimate.nonzeros = m->id.INFOG(3) < 0 ? -1e6 * m->id.INFOG(3) : m->id.INFOG(3);
+  linear->estimate.flops = m->id.RINFOG(1);
+  linear->estimate.bytes_on_rank = 1e6 * (1. + m->id.INFO(15)); /* told in whole megabytes */
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
 
   PetscCall(PetscMalloc1(linear->num_owned, &m->rhs_row));

@@ -247,9 +247,9 @@ static PetscErrorCode Agree(EqmLinear linear, const char *what)
 static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
 {
   Substructure *const s = linear->data;
+  EqmEstimate *const e = &linear->estimate;
   const EqmSeparation *separation;
   PetscReal local[2], sum[2], bytes, flops;
-  PetscInt largest;
 
   PetscFunctionBegin;
   PetscCall(EqmOrderingGetSeparation(ordering, &separation));
@@ -260,12 +260,14 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
   PetscCall(AnalyseInner(linear, separation));
   PetscCall(Agree(linear, "analysis"));
   PetscCall(CreateInterface(linear, separation));
-  PetscCall(EqmInterfaceGetCost(s->interface, &largest, &bytes, &flops));
-  local[0] = s->factor ? s->common.lnz : 0.;
-  local[1] = flops + (s->factor ? s->common.fl : 0.);
+  PetscCall(EqmInterfaceGetCost(s->interface, &e->largest_front, &bytes, &flops));
+  if (s->factor) EqmEstimateCholmod(s->factor, &s->common, e);
+  local[0] = e->nonzeros;
+  local[1] = e->flops + flops;
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPIU_SUM, linear->mesh->comm));
-  linear->factor_nonzeros = sum[0];
-  linear->factor_flops = sum[1];
+  e->nonzeros = sum[0];
+  e->flops = sum[1];
+  e->bytes_on_rank += bytes + (PetscReal)sizeof(PetscScalar) * PetscSqr((PetscReal)s->num_edge);
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscFunctionReturn(0);
 }
@@ -314,8 +316,10 @@ static void TakeCorner(Substructure *s)
     for (PetscInt j = 0; j < first[k + 1] - first[k]; j++) {
       const PetscInt column = s->corner_at[first[k] + j];
       if (column < 0) continue;
-      for (PetscInt i = j; i < rows; i++) {
-        s->corner[(size_t)column * (size_t)n + (size_t)s->corner_at[row[row_start[k] + i]]] =
+      for (PetscInt i = j; i < rows; i++) { /* relaxed supernodes hold zeros of inner unknowns, too */
+        const PetscInt to = s->corner_at[row[row_start[k] + i]];
+        if (to < 0) continue;
+        s->corner[(size_t)column * (size_t)n + (size_t)to] =
             ((const PetscScalar *)f->x)[(size_t)value_start[k] + (size_t)j * (size_t)rows + (size_t)i];
       }
     }

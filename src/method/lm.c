@@ -130,6 +130,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(EqmLinearDestroy(&solver->scalar)); /* the start's: a quarter of the memory, and of no more use */
   PetscCall(PetscFree(solver->scalar_count));
   PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, PETSC_TRUE, &lm->linear));
+  PetscCall(EqmLinearDescribe(lm->linear, solver->linear_solver, sizeof(solver->linear_solver)));
   PetscCall(TrialCreate(solver, &lm->now));
   PetscCall(TrialCreate(solver, &lm->best));
   PetscCall(TrialCreate(solver, &lm->attempt));

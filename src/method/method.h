@@ -67,6 +67,7 @@ struct _p_EqmSolver {
   PetscInt64 unfolded_from, unfolded_to; /* folds before and after the last unfolding; 0, 0: none was needed */
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
+  char linear_solver[EQM_LINEAR_TEXT]; /* what solves with the method's matrices */
 };
 
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,

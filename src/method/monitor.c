@@ -17,11 +17,12 @@ static PetscBool OnTerminal(void)
   return (PetscBool)isatty(STDOUT_FILENO);
 }
 
-/* Head line. Collective. */
+/* What solves with matrices, and the head line. Collective. */
 PetscErrorCode EqmMonitorBegin(EqmSolver solver)
 {
   PetscFunctionBegin;
   if (solver->settings.quiet) PetscFunctionReturn(0);
+  if (solver->linear_solver[0]) PetscCall(PetscPrintf(solver->comm, "linear solver: %s\n", solver->linear_solver));
   PetscCall(PetscPrintf(solver->comm, "%9s  %12s  %11s  %6s  %8s  %9s  %s\n", "iteration", "energy", "SD", "folds",
                         "step", "elapsed", "at most"));
   PetscFunctionReturn(0);

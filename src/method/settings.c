@@ -73,6 +73,7 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
                              "weight of the angle energy beside the area energy; .01 gives one nearly unique, smoother "
                              "map (-1: the method's own, 0: none)",
                              "EqmSolverSetFromOptions", set->balance, &set->balance, NULL));
+  PetscCall(EqmLinearAskOptions(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-quiet", "no progress", "EqmSolverSetFromOptions", set->quiet, &set->quiet, NULL));
   PetscCall(EqmProblemAskOptions(solver, PetscOptionsObject));
   PetscFunctionReturn(0);

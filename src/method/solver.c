@@ -144,6 +144,7 @@ static PetscErrorCode Iterate(EqmSolver solver)
 
   PetscFunctionBegin;
   PetscCall(solver->method->set_up(solver));
+  PetscCall(EqmMonitorBegin(solver));
   PetscCall(EqmMonitorRow(solver));
   PetscCall(ShouldStop(solver, &stop));
   while (!stop) {
@@ -179,7 +180,6 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
   PetscFunctionBegin;
   PetscCall(Begin(solver));
   if (solver->unfolded_from > 0) PetscCall(EqmMonitorUnfolded(solver, "at the start"));
-  PetscCall(EqmMonitorBegin(solver));
   PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   PetscCall(Iterate(solver));
   PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
@@ -218,6 +218,7 @@ static PetscErrorCode TakeHistory(EqmSolver solver, EqmMap map)
   map->ranks = solver->mesh->size;
   PetscCall(PetscStrncpy(map->message, solver->message, sizeof(map->message)));
   PetscCall(PetscStrncpy(map->method, solver->method->name, sizeof(map->method)));
+  PetscCall(PetscStrncpy(map->linear_solver, solver->linear_solver, sizeof(map->linear_solver)));
   PetscCall(PetscStrncpy(map->command, solver->target, sizeof(map->command)));
   PetscFunctionReturn(0);
 }

@@ -41,6 +41,7 @@ static PetscErrorCode MakeScalar(EqmSolver solver)
   for (PetscInt v = 0; v < mesh->num_local; v++) solver->scalar_count[v] = 1;
   unknowns.count = solver->scalar_count;
   PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, PETSC_FALSE, &solver->scalar));
+  PetscCall(EqmLinearDescribe(solver->scalar, solver->linear_solver, sizeof(solver->linear_solver)));
   PetscFunctionReturn(0);
 }
 

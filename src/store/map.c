@@ -92,6 +92,7 @@ static PetscErrorCode FillFromResult(EqmH5 h5, EqmSoup soup, EqmMap *map)
   PetscCall(EqmH5ReadReals(h5, "/map/coordinates", slab, (*map)->coordinates));
   PetscCall(EqmH5GetText(h5, "command", "", (*map)->command, sizeof((*map)->command)));
   PetscCall(EqmH5GetText(h5, "method", "", (*map)->method, sizeof((*map)->method)));
+  PetscCall(EqmH5GetText(h5, "linear_solver", "", (*map)->linear_solver, sizeof((*map)->linear_solver)));
   PetscFunctionReturn(0);
 }
 

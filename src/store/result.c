@@ -146,6 +146,7 @@ static PetscErrorCode PutProvenance(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5PutText(h5, "date", date));
   PetscCall(EqmH5PutText(h5, "command", map->command));
   PetscCall(EqmH5PutText(h5, "method", map->method));
+  PetscCall(EqmH5PutText(h5, "linear_solver", map->linear_solver));
   PetscCall(PetscOptionsGetAll(NULL, &options));
   PetscCall(EqmH5PutText(h5, "options", options));
   PetscCall(PetscFree(options));

@@ -39,6 +39,7 @@ static void AddRun(cJSON *root, EqmMap map)
   AddDate(root);
   AddText(root, "command", map->command);
   AddText(root, "method", map->method);
+  AddText(root, "linear_solver", map->linear_solver);
   AddText(root, "status", EqmStatusName(map->status));
   AddCount(root, "exit_code", (PetscInt64)map->status);
   AddText(root, "message", map->message);

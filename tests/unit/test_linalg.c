@@ -1,6 +1,7 @@
 /* Assembly and linear solvers: residuals of several right-hand sides, what happens to matrices that are not definite.
  */
 #include "support/testing.h"
+#include <math.h>
 
 enum { MOST_RHS = 4 };
 
@@ -198,6 +199,38 @@ static PetscErrorCode TestCholmodOnSeveralRanks(EqmMesh mesh, EqmOrdering orderi
   PetscFunctionReturn(0);
 }
 
+/* Estimates come before the numbers, and who has too little memory iterates or is told so. */
+static PetscErrorCode TestMemory(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns)
+{
+  PetscOptions options;
+  EqmLinear linear;
+  EqmEstimate estimate;
+  PetscBool fits;
+  PetscReal limit;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMemoryLimit(mesh->comm, &limit));
+  CHECK(limit > 1e6 && limit < INFINITY, "%g bytes are free", (double)limit);
+  PetscCall(EqmLinearEstimate(mesh, ordering, unknowns, &estimate, &fits));
+  CHECK(fits, "a mesh of nothing does not fit");
+  CHECK(estimate.nonzeros > mesh->num_vertices && estimate.flops > estimate.nonzeros, "%g nonzeros, %g operations",
+        (double)estimate.nonzeros, (double)estimate.flops);
+  CHECK(estimate.bytes >= 8. * estimate.nonzeros && estimate.bytes < 1e9, "%g bytes for %g nonzeros",
+        (double)estimate.bytes, (double)estimate.nonzeros);
+  CHECK(estimate.most_bytes_on_rank >= estimate.bytes_on_rank && estimate.most_bytes_on_rank <= estimate.bytes,
+        "%g bytes on a rank, %g in all", (double)estimate.most_bytes_on_rank, (double)estimate.bytes);
+  PetscCall(TestOptionsBegin("-memory_limit 1e-6", &options));
+  PetscCall(EqmLinearEstimate(mesh, ordering, unknowns, &estimate, &fits));
+  CHECK(!fits, "%g bytes fit in a thousand", (double)estimate.most_bytes_on_rank);
+  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, PETSC_FALSE, &linear));
+  CHECK(linear->kind == EQM_SOLVER_MULTIGRID, "%s in a thousand bytes", EqmSolverKinds[linear->kind]);
+  PetscCall(EqmLinearDestroy(&linear));
+  PetscCall(PetscOptionsInsertString(options, "-linear_solver mumps"));
+  CHECK_FAILS(EQM_ERR_USAGE, EqmLinearCreate(mesh, ordering, unknowns, PETSC_FALSE, &linear));
+  PetscCall(TestOptionsEnd(&options));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, PetscBool coupled)
 {
   EqmOrdering ordering;
@@ -205,26 +238,30 @@ static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, Pe
   PetscFunctionBegin;
   PetscCall(EqmOrderingCreate(mesh, &ordering));
   PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver auto"));
-  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver mumps"));
   PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver substructure"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver mumps"));
   PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver multigrid"));
   if (mesh->size == 1)
     PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver cholmod"));
   else
     PetscCall(TestCholmodOnSeveralRanks(mesh, ordering, unknowns));
+  PetscCall(TestMemory(mesh, ordering, unknowns));
   PetscCall(EqmOrderingDestroy(&ordering));
   PetscFunctionReturn(0);
 }
 
-int main(int argc, char **argv)
+/* Scalar unknowns, then two, one and no unknowns at a vertex. */
+static PetscErrorCode TestOnMesh(const char *shape, PetscInt n, const char *partition)
 {
   TestMesh test;
   EqmDomain domain;
   unsigned char *ones;
+  PetscOptions options;
 
-  PetscFunctionBeginUser;
-  PetscCall(EqmInitialize(&argc, &argv));
-  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 900, 2, &test));
+  PetscFunctionBegin;
+  PetscCall(TestOptionsBegin(partition, &options));
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 2, &test));
+  PetscCall(TestOptionsEnd(&options));
   PetscCall(PetscMalloc1(test.mesh->num_local, &ones));
   for (PetscInt v = 0; v < test.mesh->num_local; v++) ones[v] = 1;
   const EqmUnknowns scalar = {.num_owned = test.mesh->num_owned,
@@ -232,7 +269,7 @@ int main(int argc, char **argv)
                               .start = test.mesh->global,
                               .count = ones};
   PetscCall(TestUnknowns(test.mesh, &scalar, PETSC_FALSE));
-  PetscCall(EqmDomainCreateSquare(test.mesh, NULL, &domain)); /* two, one and no unknowns at a vertex */
+  PetscCall(EqmDomainCreateSquare(test.mesh, NULL, &domain));
   const EqmUnknowns coupled = {.num_owned = domain->num_dofs,
                                .first = domain->dof_first,
                                .start = domain->dof_start,
@@ -241,6 +278,16 @@ int main(int argc, char **argv)
   PetscCall(EqmDomainDestroy(&domain));
   PetscCall(PetscFree(ones));
   PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestOnMesh("hills", 900, "-partition metis"));
+  PetscCall(TestOnMesh("hills", 300, "-partition slab")); /* shares of many pieces */
+  PetscCall(TestOnMesh("hills", 16, "-partition slab"));  /* ranks with nothing inside */
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
