@@ -9,5 +9,6 @@
 #include <equimap/domain.h>
 #include <equimap/energy.h>
 #include <equimap/solver.h>
+#include <equimap/register.h>
 
 #endif
