@@ -12,6 +12,15 @@ PETSC_EXTERN PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, Eq
 /* Read the options -method, -start, -max_it, -energy_rtol, -energy_target, -gradient_tol, -wall_time, -balance, -quiet
    and those of the method; with -help in the options database, print them. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver);
+/* Begin with the map that has the given places (of the target, `dim` coordinates per owned vertex) in place of -start.
+   `x` is copied. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmSolverSetFirstMap(EqmSolver solver, PetscInt dim, const PetscReal *x);
+/* Draw vertices (input numbers, `num` of them, the same lists on every rank) towards places of the target, `dim`
+   coordinates each: the objective gets the term lambda sum |x(v_i) - q_i|^2 (000 (46), 001 section 6.6), and the map is
+   not done before each is closer than `tolerance`. The lists are copied. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmSolverSetLandmarks(EqmSolver solver, PetscInt num, PetscInt dim,
+                                                  const PetscInt *vertices, const PetscReal *places, PetscReal lambda,
+                                                  PetscReal tolerance);
 /* Minimise. Never fails for want of convergence: the map's status tells. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverSolve(EqmSolver solver);
 /* The present map in the numbering of `soup`, which must be the one that the mesh was made of and must outlive the map;

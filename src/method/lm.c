@@ -35,14 +35,16 @@ static void AdaptDamping(EqmLm *lm, PetscReal t)
 
 /* Sphere: the barrier gives way when it is a large part of the objective and not needed to keep steps long, or when it
    is what the residual is in balance with: a minimum of the sum is not yet one of the residual. */
-static void AdaptBarrier(EqmLm *lm, PetscReal t, PetscReal old_squares)
+static void AdaptBarrier(EqmSolver solver, PetscReal t, PetscReal old_squares)
 {
+  EqmLm *const lm = solver->data;
+
   while (t > .2 && lm->kappa * lm->now.barrier > .1 * lm->now.squares &&
          lm->kappa > PETSC_MACHINE_EPSILON * PETSC_MACHINE_EPSILON) {
     lm->kappa *= .3;
   }
   if (lm->now.squares > .97 * old_squares) lm->kappa *= .01;
-  EqmLmWeigh(lm, &lm->now);
+  EqmLmWeigh(solver, &lm->now);
 }
 
 static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
@@ -78,7 +80,7 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   AdaptDamping(lm, t);
   EqmLmSwap(&lm->now, &lm->best);
   PetscCall(EqmLmInnerSteps(solver));
-  if (lm->kappa > 0.) AdaptBarrier(lm, t, old_squares);
+  if (lm->kappa > 0.) AdaptBarrier(solver, t, old_squares);
   PetscCall(EqmPlaceCopy(solver->domain, &lm->now.place, &solver->place));
   PetscCall(PetscArraycpy(solver->image, lm->now.image, solver->mesh->num_local_cells));
   PetscCall(EqmSolverSum(solver));
@@ -201,4 +203,5 @@ const EqmMethod EqmMethodLm = {
     .set_up = SetUp,
     .step = Step,
     .destroy = Destroy,
+    .takes_landmarks = PETSC_TRUE,
 };

@@ -13,6 +13,7 @@ typedef struct {
   PetscReal *half_det, *lean;  /* sphere: half the determinant of each image triangle, q = log(half_det / a) */
   PetscReal barrier;           /* sphere: sum w q^2 */
   PetscReal angle;             /* E_D - A, if the angle energy has a weight */
+  PetscReal pull;              /* sum |x - q|^2 over the landmarks */
   PetscReal objective;         /* with the angle energy; infinite for a map that folds or disorders the boundary */
 } EqmTrial;
 
@@ -45,7 +46,7 @@ static inline void EqmLmResidual(PetscBool balanced, PetscReal l, PetscReal *rho
 PETSC_INTERN PetscErrorCode EqmLmWeightedSum(EqmMesh mesh, const PetscReal *x, PetscInt power, PetscReal *sum);
 PETSC_INTERN PetscErrorCode EqmLmRemoveMean(EqmMesh mesh, PetscReal *x);
 PETSC_INTERN PetscErrorCode EqmLmAngleEnergy(EqmSolver solver, const PetscReal *x, PetscReal *energy);
-PETSC_INTERN void EqmLmWeigh(const EqmLm *lm, EqmTrial *trial);
+PETSC_INTERN void EqmLmWeigh(EqmSolver solver, EqmTrial *trial);
 PETSC_INTERN PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial);
 /* lm_model.c */
 PETSC_INTERN PetscErrorCode EqmLmGradient(EqmSolver solver);

@@ -52,6 +52,7 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
   const PetscReal floor = .3 * PetscSqrtReal(lm->now.squares);
   const PetscReal elastic = .5 * PetscSqrtReal(3.) * lm->mu * (PetscAbsReal(lm->now.residual[cell]) + floor);
   const PetscReal angle = .5 * lm->angle_weight, weight = mesh->weight[cell];
+  const PetscBool drawn = (PetscBool)(solver->landmarks.num > 0);
   PetscReal basis[6][3], of_rho[6], of_lean[6];
   PetscInt corner[6];
   const PetscInt dim = solver->domain->dim, n = CellBasis(solver->domain, &lm->now.place, v, corner, basis);
@@ -70,20 +71,21 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
         entry += angle * dot * (a == b ? w[(a + 1) % 3] + w[(a + 2) % 3] : -w[3 - a - b]);
         if (a != b) entry -= angle * cross * (b == (a + 1) % 3 ? .5 : -.5);
       }
+      if (drawn && a == b) entry += solver->landmarks.share[v[a]] * dot;
       matrix[n * i + j] = entry;
     }
   }
 }
 
-/* sum over cells of w (value d rho + kappa lean_value d q), and the angle energy's half gradient, in degrees of
-   freedom. NULL for `value`: ones; for `lean_value`: nothing. */
+/* sum over cells of w (value d rho + kappa lean_value d q), and half the gradient of the other terms (angle energy,
+   landmarks), in degrees of freedom. NULL for `value`: ones; for `lean_value`: nothing. */
 static PetscErrorCode PullBack(EqmSolver solver, const PetscReal *value, const PetscReal *lean_value,
-                               PetscBool with_angle, Vec result)
+                               PetscBool with_others, Vec result)
 {
   EqmLm *const lm = solver->data;
   const EqmMesh mesh = solver->mesh;
   const PetscInt n = solver->domain->dim * mesh->num_owned;
-  const PetscReal angle = with_angle ? .5 * lm->angle_weight : 0.;
+  const PetscReal angle = with_others ? .5 * lm->angle_weight : 0.;
   PetscReal *scaled, *pull;
 
   PetscFunctionBegin;
@@ -105,6 +107,8 @@ static PetscErrorCode PullBack(EqmSolver solver, const PetscReal *value, const P
     PetscCall(EqmLaplacianApply(mesh, lm->laplacian, 2, lm->now.place.x, pull));
     for (PetscInt k = 0; k < n; k++) lm->ambient[k] += angle * pull[k];
   }
+  if (with_others)
+    EqmLandmarksAddGradient(&solver->landmarks, solver->domain, lm->now.place.x, solver->landmarks.weight, lm->ambient);
   PetscCall(PetscFree2(scaled, pull));
   PetscCall(EqmDomainProject(solver->domain, &lm->now.place, lm->ambient, result));
   PetscFunctionReturn(0);
@@ -226,6 +230,10 @@ PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease)
     for (PetscInt c = 0; c < mesh->num_local_cells; c++) lm->lean_rate[c] += lm->now.lean[c];
     PetscCall(EqmLmWeightedSum(mesh, lm->lean_rate, 2, &squares));
     *decrease += lm->kappa * (lm->now.barrier - squares);
+  }
+  if (solver->landmarks.num_total > 0) {
+    PetscCall(EqmLandmarksSquares(&solver->landmarks, solver->domain, lm->now.place.x, lm->velocity, &squares));
+    *decrease += solver->landmarks.weight * (lm->now.pull - squares);
   }
   if (lm->epsilon > 0.) {
     PetscReal quadratic, linear, local = 0.;

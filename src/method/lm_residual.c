@@ -79,9 +79,12 @@ static PetscErrorCode EvaluateBarrier(EqmSolver solver, EqmTrial *trial, PetscBo
 }
 
 /* What the trial is worth with the present weights. Not collective. */
-void EqmLmWeigh(const EqmLm *lm, EqmTrial *trial)
+void EqmLmWeigh(EqmSolver solver, EqmTrial *trial)
 {
-  trial->objective = trial->squares + lm->kappa * trial->barrier + lm->angle_weight * trial->angle;
+  const EqmLm *const lm = solver->data;
+
+  trial->objective = trial->squares + lm->kappa * trial->barrier + lm->angle_weight * trial->angle +
+                     solver->landmarks.weight * trial->pull;
 }
 
 /* Look at trial->place. Counts one evaluation. Collective. */
@@ -113,6 +116,8 @@ PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial)
   PetscCall(EqmLmWeightedSum(mesh, trial->residual, 2, &trial->squares));
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
   if (balanced) PetscCall(EqmLmAngleEnergy(solver, trial->place.x, &trial->angle));
-  EqmLmWeigh(lm, trial);
+  if (solver->landmarks.num_total > 0)
+    PetscCall(EqmLandmarksSquares(&solver->landmarks, solver->domain, trial->place.x, NULL, &trial->pull));
+  EqmLmWeigh(solver, trial);
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
 
 #include <equimap/solver.h>
 #include "linalg/linalg.h"
+#include "method/landmarks.h"
 #include "method/problem.h"
 #include "method/objective.h"
 
@@ -21,6 +22,7 @@ struct EqmMethod {
   PetscErrorCode (*set_up)(EqmSolver);                      /* solver->place holds the start */
   PetscErrorCode (*step)(EqmSolver, EqmStep *); /* leaves place, image, step_length, gradient_norm, objective */
   PetscErrorCode (*destroy)(EqmSolver);
+  PetscBool takes_landmarks;
 };
 
 typedef struct {
@@ -52,6 +54,10 @@ struct _p_EqmSolver {
   const EqmMethod *method;
   void *data; /* the method's own */
 
+  PetscReal *first_map; /* given from outside, first_map_dim per owned vertex; NULL: -start makes it */
+  PetscInt first_map_dim;
+  EqmLandmarks landmarks;
+
   EqmPlace place;                         /* the present map */
   PetscReal *image;                       /* its image measures, per local cell */
   PetscReal *angle_weights, *vertex_mass; /* of EqmAngleWeights and EqmVertexMass; NULL until the first need */
@@ -78,6 +84,9 @@ PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 PETSC_INTERN PetscErrorCode EqmSolverLook(EqmSolver solver);
 /* Refresh solver->totals, where solver->image is up to date already. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverSum(EqmSolver solver);
+/* What was given from outside: first map, landmarks. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverTakeGiven(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmSolverLandmarksReached(EqmSolver solver, PetscBool *reached);
 PETSC_INTERN PetscErrorCode EqmMonitorBegin(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorRow(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorEnd(EqmSolver solver);

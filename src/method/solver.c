@@ -31,6 +31,8 @@ PetscErrorCode EqmSolverDestroy(EqmSolver *solver)
   PetscCall(PetscFree(s->vertex_mass));
   PetscCall(PetscFree(s->objectives));
   PetscCall(PetscFree(s->history));
+  PetscCall(PetscFree(s->first_map));
+  PetscCall(EqmLandmarksReset(&s->landmarks));
   PetscCall(EqmDomainDestroy(&s->domain));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(0);
@@ -62,7 +64,7 @@ static PetscErrorCode Begin(EqmSolver solver)
   PetscCall(EqmOrderingCreate(mesh, &solver->ordering));
   PetscCall(EqmPlaceCreate(solver->domain, &solver->place));
   PetscCall(PetscMalloc1(mesh->num_local_cells, &solver->image));
-  PetscCall(EqmStart(solver));
+  PetscCall(EqmSolverTakeGiven(solver));
   PetscCall(EqmSolverLook(solver));
   PetscCall(EqmPhaseEnd(mesh->ledger, EQM_PHASE_START));
   PetscFunctionReturn(0);
@@ -98,17 +100,20 @@ static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
 {
   const EqmSettings *const set = &solver->settings;
   PetscReal seconds;
+  PetscBool reached;
   EqmWork *work;
 
   PetscFunctionBegin;
+  PetscCall(EqmSolverLandmarksReached(solver, &reached));
   PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
   PetscCall(EqmLedgerGetSeconds(solver->mesh->ledger, NULL, NULL, &seconds));
   *stop = PETSC_TRUE;
   solver->status = EQM_STATUS_CONVERGED;
-  if (set->energy_target > 0. && solver->totals.energy <= set->energy_target) {
+  if (reached && set->energy_target > 0. && solver->totals.energy <= set->energy_target) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %g",
                             (double)set->energy_target));
-  } else if (set->ratio_tol > 0. && solver->totals.energy <= PetscSqr(set->ratio_tol) * solver->totals.total) {
+  } else if (reached && set->ratio_tol > 0. &&
+             solver->totals.energy <= PetscSqr(set->ratio_tol) * solver->totals.total) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
                             "the ratios are within %g of one, root mean square", (double)set->ratio_tol));
   } else if (solver->gradient_norm >= 0. && solver->gradient_norm <= set->gradient_tol) {
