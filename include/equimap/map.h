@@ -44,6 +44,7 @@ typedef struct _p_EqmMap *EqmMap;
 struct _p_EqmMap {
   EqmSoup soup;                /* the input mesh; referenced, not owned */
   PetscInt dim;                /* coordinates per vertex: 2 or 3 */
+  PetscBool in_space;          /* triangles lie on a surface in space, not on the sphere: areas have no sign */
   PetscReal *coordinates;      /* dim * slab of vertices */
   PetscReal *cell_ratio;       /* r per cell of the slab */
   PetscReal *vertex_ratio;     /* mean of r over the cells around a vertex, weighted by w; per vertex of the slab */

@@ -73,6 +73,9 @@ PETSC_EXTERN PetscErrorCode EqmMeshCellsToInput(EqmMesh mesh, EqmSoup soup, Pets
 PETSC_EXTERN PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *slab,
                                                      PetscReal *local);
 
+/* Local numbers of those of `num` vertices (input numbers) that this rank owns, -1 for the others. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmMeshFindVertices(EqmMesh mesh, PetscInt num, const PetscInt *input, PetscInt *local);
+
 /* The closed surface around a solid, as a mesh of its own: its vertices are the solid's boundary vertices in input
    order, its triangles look outward. */
 typedef struct _p_EqmSurface *EqmSurface;

@@ -49,4 +49,28 @@ PETSC_EXTERN PetscErrorCode EqmLocationInterpolate(EqmLocation location, EqmMesh
 PETSC_EXTERN PetscErrorCode EqmLocationSample(EqmLocation location, EqmMesh mesh, PetscInt width,
                                               const PetscReal *cells, PetscReal *points);
 
+/* ---- registration */
+
+/* A correspondence phi = g^-1 o h o f between A and B: maps f of A and g of B to one target, the disk, the sphere or
+   the ball, and a map h of the target to itself. */
+typedef struct _p_EqmRegistration *EqmRegistration;
+
+PETSC_EXTERN PetscErrorCode EqmRegistrationCreate(MPI_Comm comm, EqmLedger ledger, EqmRegistration *registration);
+PETSC_EXTERN PetscErrorCode EqmRegistrationDestroy(EqmRegistration *registration);
+/* Read the options that --help of `equimap register` lists. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationSetFromOptions(EqmRegistration registration);
+/* Read A and B: meshes, or results that hold a map. `file_b` may be "target": the disk, sphere or ball itself. Errors:
+   EQM_ERR_IO, EQM_ERR_MESH (cannot be mapped, or A and B are not of one kind), EQM_ERR_USAGE. Collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationRead(EqmRegistration registration, const char *file_a, const char *file_b);
+/* Map what is no result yet, move landmarks together, compose, measure. The map's status tells how it went.
+   Collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationSolve(EqmRegistration registration);
+/* phi as a map of A: /map/coordinates are the points of B, three coordinates each (with B the target: of the target).
+   Referenced, not to be destroyed. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationGetMap(EqmRegistration registration, EqmMap *map);
+/* Print the figures. Collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationView(EqmRegistration registration);
+/* Print (on rank 0) the options that EqmRegistrationSetFromOptions knows. Collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationHelp(MPI_Comm comm);
+
 #endif

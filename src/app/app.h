@@ -19,6 +19,7 @@ typedef struct {
 typedef PetscErrorCode (*EqmCommand)(const EqmCommandLine *line, EqmStatus *status);
 
 PETSC_INTERN PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status); /* disk, square, ... */
+PETSC_INTERN PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status);

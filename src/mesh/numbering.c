@@ -59,3 +59,23 @@ PetscErrorCode EqmMeshCellsToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, c
   PetscCall(PetscLayoutDestroy(&layout));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode EqmMeshFindVertices(EqmMesh mesh, PetscInt num, const PetscInt *input, PetscInt *local)
+{
+  PetscInt *sorted, *vertex;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(mesh->num_owned, &sorted, mesh->num_owned, &vertex));
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    sorted[v] = mesh->vertex_input[v];
+    vertex[v] = v;
+  }
+  PetscCall(PetscSortIntWithArray(mesh->num_owned, sorted, vertex));
+  for (PetscInt i = 0; i < num; i++) {
+    PetscInt at;
+    PetscCall(PetscFindInt(input[i], mesh->num_owned, sorted, &at));
+    local[i] = at < 0 ? -1 : vertex[at];
+  }
+  PetscCall(PetscFree2(sorted, vertex));
+  PetscFunctionReturn(0);
+}

@@ -49,7 +49,7 @@ PetscErrorCode EqmLandmarksSetUp(EqmLandmarks *landmarks, EqmDomain domain)
 {
   const EqmMesh mesh = domain->mesh;
   const PetscInt dim = landmarks->dim;
-  PetscInt *sorted, *local;
+  PetscInt *local;
 
   PetscFunctionBegin;
   if (landmarks->num_total == 0) PetscFunctionReturn(0);
@@ -57,21 +57,15 @@ PetscErrorCode EqmLandmarksSetUp(EqmLandmarks *landmarks, EqmDomain domain)
   landmarks->weight = landmarks->lambda / domain->target_measure;
   PetscCall(PetscMalloc1(landmarks->num_total, &landmarks->vertex));
   PetscCall(PetscMalloc1(dim * landmarks->num_total, &landmarks->place));
-  PetscCall(PetscMalloc2(mesh->num_owned, &sorted, mesh->num_owned, &local));
-  for (PetscInt v = 0; v < mesh->num_owned; v++) {
-    sorted[v] = mesh->vertex_input[v];
-    local[v] = v;
-  }
-  PetscCall(PetscSortIntWithArray(mesh->num_owned, sorted, local));
+  PetscCall(PetscMalloc1(landmarks->num_total, &local));
+  PetscCall(EqmMeshFindVertices(mesh, landmarks->num_total, landmarks->input_vertex, local));
   for (PetscInt i = 0; i < landmarks->num_total; i++) {
-    PetscInt at;
-    PetscCall(PetscFindInt(landmarks->input_vertex[i], mesh->num_owned, sorted, &at));
-    if (at < 0) continue;
-    landmarks->vertex[landmarks->num] = local[at];
+    if (local[i] < 0) continue;
+    landmarks->vertex[landmarks->num] = local[i];
     for (PetscInt c = 0; c < dim; c++) landmarks->place[dim * landmarks->num + c] = landmarks->target[dim * i + c];
     landmarks->num++;
   }
-  PetscCall(PetscFree2(sorted, local));
+  PetscCall(PetscFree(local));
   PetscCall(MakeShares(landmarks, mesh));
   PetscFunctionReturn(0);
 }

@@ -143,3 +143,10 @@ PetscReal EqmClosestOnCell(EqmImageKind kind, PetscInt cell_size, const PetscRea
   if (kind == EQM_IMAGE_SPHERE) return OnSphere(y, corner, barycentric);
   return EqmClosestOnTriangle(y, corner[0], corner[1], corner[2], barycentric);
 }
+
+PetscReal EqmSignedMeasure(EqmImageKind kind, PetscInt cell_size, const PetscReal *const corner[4])
+{
+  if (cell_size == 4) return EqmVolume(corner[0], corner[1], corner[2], corner[3]);
+  if (kind == EQM_IMAGE_PLANE) return EqmArea2(corner[0], corner[1], corner[2]);
+  return EqmHalfDet(corner[0], corner[1], corner[2]);
+}

@@ -10,5 +10,7 @@ PETSC_INTERN PetscReal EqmClosestOnTriangle(const PetscReal y[3], const PetscRea
                                             const PetscReal *c, PetscReal barycentric[3]);
 PETSC_INTERN PetscReal EqmClosestOnCell(EqmImageKind kind, PetscInt cell_size, const PetscReal y[3],
                                         const PetscReal *const corner[4], PetscReal barycentric[4]);
+/* Area or volume of a cell, negative where it is seen from behind (on the sphere by its determinant). */
+PETSC_INTERN PetscReal EqmSignedMeasure(EqmImageKind kind, PetscInt cell_size, const PetscReal *const corner[4]);
 
 #endif

@@ -3,8 +3,23 @@
 #include "support/testing.h"
 #include "method/lm.h"
 
+/* Three vertices are drawn to places where they are not. */
+static PetscErrorCode DrawLandmarks(EqmSolver solver)
+{
+  static const PetscInt vertex[3] = {5, 40, 77};
+  static const PetscReal place[9] = {.3, .4, .866, -.5, .2, .84, .6, -.1, .79};
+  PetscReal in_target[9];
+  const PetscInt dim = solver->domain->dim;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 3 * dim; k++) in_target[k] = place[3 * (k / dim) + k % dim];
+  PetscCall(EqmSolverSetLandmarks(solver, 3, dim, vertex, in_target, 2., 1e-3));
+  PetscCall(EqmLandmarksSetUp(&solver->landmarks, solver->domain));
+  PetscFunctionReturn(0);
+}
+
 /* A solver at its start, its method set up. */
-static PetscErrorCode Begin(EqmMesh mesh, const char *target, PetscReal balance, EqmSolver *solver)
+static PetscErrorCode Begin(EqmMesh mesh, const char *target, PetscReal balance, PetscBool landmarks, EqmSolver *solver)
 {
   char options[128];
 
@@ -12,6 +27,7 @@ static PetscErrorCode Begin(EqmMesh mesh, const char *target, PetscReal balance,
   PetscCall(PetscSNPrintf(options, sizeof(options), "-method lm -start guarded -start_steps 1 -max_it 0 -balance %g",
                           (double)balance));
   PetscCall(TestSolve(mesh, target, options, solver));
+  if (landmarks) PetscCall(DrawLandmarks(*solver));
   PetscCall((*solver)->method->set_up(*solver));
   EqmLm *const lm = (*solver)->data;
   if (lm->kappa > 0.) lm->kappa = .3; /* not one, so that a forgotten factor shows */
@@ -113,8 +129,8 @@ static PetscErrorCode TestGradient(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* mu d^T M d, the damping of docs/methods.md: per cell (|rho| + .3 sqrt(phi)) (sqrt(3)/2) times the squared displacement
-   about its mean. */
+/* mu d^T M d, the damping of docs/methods.md: per cell (|rho| + .3 sqrt(phi)) (sqrt(3)/2) times the squared
+   displacement about its mean. */
 static PetscReal Metric(EqmSolver solver, const PetscReal *velocity)
 {
   const EqmLm *const lm = solver->data;
@@ -141,7 +157,7 @@ static PetscErrorCode QuadraticForm(EqmSolver solver, Vec x, PetscReal *form)
   EqmLm *const lm = solver->data;
   const EqmMesh mesh = solver->mesh;
   const PetscInt m = mesh->num_local_cells;
-  PetscReal *residual, *lean = NULL, *velocity, objective[5], gauss = 0., length, scale;
+  PetscReal *residual, *lean = NULL, *velocity, objective[5], gauss = 0., drawn = 0., length, scale;
   Vec step;
 
   PetscFunctionBegin;
@@ -164,6 +180,11 @@ static PetscErrorCode QuadraticForm(EqmSolver solver, Vec x, PetscReal *form)
     PetscCall(EqmLmAngleEnergy(solver, velocity, &angle));
     *form += lm->epsilon / solver->domain->target_measure * angle;
   }
+  for (PetscInt i = 0; i < solver->landmarks.num; i++) {
+    for (PetscInt k = 0; k < solver->domain->dim; k++)
+      drawn += solver->landmarks.weight * PetscSqr(velocity[solver->domain->dim * solver->landmarks.vertex[i] + k]);
+  }
+  *form += TestSum(mesh->comm, drawn);
   *form *= PetscSqr(length / scale);
   PetscCall(VecDestroy(&step));
   PetscCall(PetscFree2(residual, velocity));
@@ -246,14 +267,14 @@ static PetscErrorCode TestBend(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TestTarget(const char *shape, const char *target, PetscReal balance)
+static PetscErrorCode TestTarget(const char *shape, const char *target, PetscReal balance, PetscBool landmarks)
 {
   TestMesh test;
   EqmSolver solver;
 
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 300, 1, &test));
-  PetscCall(Begin(test.mesh, target, balance, &solver));
+  PetscCall(Begin(test.mesh, target, balance, landmarks, &solver));
   PetscCall(TestGradient(solver));
   PetscCall(TestMatrix(solver));
   PetscCall(TestBend(solver));
@@ -266,11 +287,14 @@ int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
   PetscCall(EqmInitialize(&argc, &argv));
-  PetscCall(TestTarget("hills", "disk", 0.));
-  PetscCall(TestTarget("cap", "disk", .05));
-  PetscCall(TestTarget("patch", "square", 0.));
-  PetscCall(TestTarget("hills", "square", .02));
-  PetscCall(TestTarget("head", "sphere", 0.));
+  PetscCall(TestTarget("hills", "disk", 0., PETSC_FALSE));
+  PetscCall(TestTarget("cap", "disk", .05, PETSC_FALSE));
+  PetscCall(TestTarget("patch", "square", 0., PETSC_FALSE));
+  PetscCall(TestTarget("hills", "square", .02, PETSC_FALSE));
+  PetscCall(TestTarget("head", "sphere", 0., PETSC_FALSE));
+  PetscCall(TestTarget("hills", "disk", 0., PETSC_TRUE));
+  PetscCall(TestTarget("cap", "disk", .05, PETSC_TRUE));
+  PetscCall(TestTarget("head", "sphere", 0., PETSC_TRUE));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }

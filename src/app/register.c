@@ -1,0 +1,102 @@
+/* equimap register A B -o OUT: a measure-preserving correspondence between two surfaces or two solids. */
+#include "app.h"
+#include <omp.h>
+
+typedef struct {
+  char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN];
+  PetscBool has_output, has_summary;
+} RegisterOptions;
+
+static const char manual[] = "\n"
+                             "A and B are meshes, or results of equimap that hold a map (.h5): both disk-type "
+                             "surfaces, both closed surfaces of\n"
+                             "genus 0, or both solid balls. What is no result is mapped first. B may be the word "
+                             "target: then A is mapped to the\n"
+                             "unit disk or sphere with its landmarks at given points of it.\n";
+
+static PetscErrorCode AskOptions(RegisterOptions *options)
+{
+  PetscInt threads = omp_get_max_threads(); /* taken by main before any command; asked here to be listed by --help */
+
+  PetscFunctionBegin;
+  PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
+  PetscCall(PetscOptionsString("-o",
+                               "where the correspondence goes: .h5 (everything, with an .xmf for ParaView), or a mesh "
+                               "format: A's cells with their vertices on B; several with commas",
+                               NULL, "", options->output, sizeof(options->output), &options->has_output));
+  PetscCall(PetscOptionsString("-summary", "write the run's figures as JSON", NULL, "", options->summary,
+                               sizeof(options->summary), &options->has_summary));
+  PetscCall(PetscOptionsInt("-threads",
+                            "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
+                            threads, &threads, NULL));
+  PetscOptionsEnd();
+  PetscFunctionReturn(0);
+}
+
+/* Refuse before the long run what would be refused after it. */
+static PetscErrorCode CheckArguments(const EqmCommandLine *line, const RegisterOptions *options)
+{
+  PetscFunctionBegin;
+  if (line->num_arguments != 2)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
+            "register wants two meshes or results, %d given; usage: equimap register A B -o OUT.h5",
+            line->num_arguments);
+  if (!options->has_output) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "no output named; add -o OUT.h5");
+  PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(EqmCheckOutput(line->argument[k], options->output));
+    if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[k], options->summary));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CloseBooks(EqmLedger ledger, EqmMap map)
+{
+  PetscFunctionBegin;
+  map->threads = omp_get_max_threads();
+  PetscCall(EqmLedgerGetSeconds(ledger, map->phase_seconds, map->event_seconds, &map->total_seconds));
+  PetscCall(EqmGetPeakMemory(PETSC_COMM_WORLD, &map->memory_max_per_rank, &map->memory_total));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, EqmMap map)
+{
+  PetscFunctionBegin;
+  PetscCall(CloseBooks(ledger, map));
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
+  PetscCall(EqmMapWrite(map, options->output));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
+  PetscCall(CloseBooks(ledger, map));
+  if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));
+  PetscFunctionReturn(0);
+}
+
+/* Run `equimap register`. Collective on PETSC_COMM_WORLD. Errors: EQM_ERR_USAGE, and those of EqmRegistrationRead and
+   EqmMapWrite. */
+PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
+{
+  RegisterOptions options = {0};
+  EqmLedger ledger;
+  EqmRegistration registration;
+  EqmMap map;
+
+  PetscFunctionBegin;
+  if (line->help) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", manual));
+  PetscCall(AskOptions(&options));
+  PetscCall(EqmRegistrationHelp(PETSC_COMM_WORLD)); /* asks for every option, so that unknown ones stand out */
+  if (line->help) PetscFunctionReturn(0);
+  PetscCall(EqmRejectUnknownOptions(line));
+  PetscCall(CheckArguments(line, &options));
+  PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
+  PetscCall(EqmRegistrationCreate(PETSC_COMM_WORLD, ledger, &registration));
+  PetscCall(EqmRegistrationSetFromOptions(registration));
+  PetscCall(EqmRegistrationRead(registration, line->argument[0], line->argument[1]));
+  PetscCall(EqmRegistrationSolve(registration));
+  PetscCall(EqmRegistrationGetMap(registration, &map));
+  PetscCall(Write(&options, ledger, map));
+  PetscCall(EqmRegistrationView(registration));
+  *status = map->status;
+  PetscCall(EqmRegistrationDestroy(&registration));
+  PetscCall(EqmLedgerDestroy(&ledger));
+  PetscFunctionReturn(0);
+}

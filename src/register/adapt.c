@@ -1,0 +1,147 @@
+/* The map h of the target to itself: a rotation, a flow, and the minimisation that makes the landmarks meet. */
+#include "register/registration.h"
+#include "register/closest.h"
+#include "register/flow.h"
+#include "register/rotation.h"
+#include "method/method.h"
+
+/* 000 section 6: the rotation of A's map that brings the landmarks closest to their goals. Collective. */
+PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r)
+{
+  const PetscInt num = r->landmarks.num, dim = r->dim;
+  PetscReal *place, correlation[9] = {0.}, rotation[9];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(dim * num, &place));
+  PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, dim, r->a.x, place));
+  for (PetscInt k = 0; k < dim * dim * num; k++) {
+    const PetscInt p = k / (dim * dim), i = k / dim % dim, j = k % dim;
+    correlation[dim * i + j] += r->goal[dim * p + i] * place[dim * p + j];
+  }
+  PetscCall(EqmBestRotation(dim, correlation, rotation));
+  EqmRotate(dim, rotation, r->a.mesh->num_local, r->a.x);
+  PetscCall(PetscFree(place));
+  PetscFunctionReturn(0);
+}
+
+/* Minimise the area energy of h o f with the landmarks drawn to `goal`, from the present places. Collective. */
+static PetscErrorCode MinimiseOnce(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal,
+                                   PetscReal weight, PetscBool *reached)
+{
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  if (!r->set.quiet)
+    PetscCall(PetscPrintf(r->comm, "h for %s: landmarks drawn with weight %g\n", side->name, (double)weight));
+  PetscCall(EqmSolverCreate(side->mesh, r->target, &solver));
+  solver->settings.ratio_tol = EQM_REGISTER_RATIO_TOL;
+  PetscCall(EqmSolverSetFromOptions(solver));
+  PetscCall(EqmSolverSetFirstMap(solver, r->dim, side->x));
+  PetscCall(EqmSolverSetLandmarks(solver, r->landmarks.num, r->dim, vertices, goal, weight, r->set.tolerance));
+  PetscCall(EqmSolverSolve(solver));
+  PetscCall(EqmSolverLandmarksReached(solver, reached));
+  PetscCall(PetscArraycpy(side->x, solver->place.x, r->dim * side->mesh->num_local));
+  PetscCall(EqmMapDestroy(&side->map));
+  PetscCall(EqmSolverGetMap(solver, side->soup, &side->map));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscFunctionReturn(0);
+}
+
+/* Continuation: the weight grows tenfold until the landmarks are close enough. */
+static PetscErrorCode Minimise(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal)
+{
+  PetscReal weight = r->set.weight;
+  PetscBool reached = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt stage = 0; stage < r->set.stages && !reached; stage++, weight *= 10.)
+    PetscCall(MinimiseOnce(r, side, vertices, goal, weight, &reached));
+  PetscFunctionReturn(0);
+}
+
+/* How many cells are folded, with places `x`. */
+static PetscErrorCode CountFolds(EqmRegistration r, const EqmSide *side, const PetscReal *x, PetscInt64 *folds)
+{
+  PetscInt64 local = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < side->mesh->num_owned_cells; c++) {
+    const PetscReal *corner[4];
+    for (PetscInt a = 0; a < side->mesh->cell_size; a++)
+      corner[a] = x + r->dim * side->mesh->cells[side->mesh->cell_size * c + a];
+    local += !(EqmSignedMeasure(r->kind, side->mesh->cell_size, corner) > 0.);
+  }
+  PetscCall(MPIU_Allreduce(&local, folds, 1, MPIU_INT64, MPI_SUM, r->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Let the flow bring the landmarks near; where it folds a triangle that is too coarse for it, the places stay. */
+static PetscErrorCode Flow(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal)
+{
+  const PetscInt length = r->dim * side->mesh->num_local;
+  PetscReal *from, *moved;
+  PetscInt64 before, after;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(r->dim * r->landmarks.num, &from, length, &moved));
+  PetscCall(EqmSideGather(side, r->landmarks.num, vertices, r->dim, side->x, from));
+  PetscCall(PetscArraycpy(moved, side->x, length));
+  PetscCall(EqmLandmarkFlow(r->dim, r->set.reach, r->landmarks.num, from, goal, side->mesh->num_local, moved,
+                            &r->figures.start_left));
+  PetscCall(CountFolds(r, side, side->x, &before));
+  PetscCall(CountFolds(r, side, moved, &after));
+  if (after <= before) PetscCall(PetscArraycpy(side->x, moved, length));
+  if (!r->set.quiet)
+    PetscCall(PetscPrintf(r->comm, "flow of %s: landmarks to within %.1e, %" PetscInt64_FMT " triangles folded%s\n",
+                          side->name, (double)r->figures.start_left, after,
+                          after <= before ? "" : ": not taken; a larger -landmark_reach is smoother"));
+  PetscCall(PetscFree2(from, moved));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Move(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal)
+{
+  PetscFunctionBegin;
+  if (r->set.start == EQM_LANDMARKS_FLOW) PetscCall(Flow(r, side, vertices, goal));
+  PetscCall(Minimise(r, side, vertices, goal));
+  PetscFunctionReturn(0);
+}
+
+/* 001 section 6.6: both maps go half the way, to the middles between the landmarks. */
+static PetscErrorCode MoveToMiddles(EqmRegistration r)
+{
+  const PetscInt num = r->landmarks.num, dim = r->dim;
+  PetscReal *middle;
+  PetscInt *of_b;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(dim * num, &middle, num, &of_b));
+  PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, dim, r->a.x, middle));
+  for (PetscInt i = 0; i < num; i++) {
+    PetscReal squared = 0., length;
+    of_b[i] = (PetscInt)r->landmarks.other[i];
+    for (PetscInt k = 0; k < dim; k++) {
+      middle[dim * i + k] = .5 * (middle[dim * i + k] + r->goal[dim * i + k]);
+      squared += PetscSqr(middle[dim * i + k]);
+    }
+    length = PetscSqrtReal(squared);
+    for (PetscInt k = 0; k < dim && r->kind == EQM_IMAGE_SPHERE; k++) middle[dim * i + k] /= length;
+  }
+  PetscCall(Move(r, &r->a, r->landmarks.vertex, middle));
+  PetscCall(Move(r, &r->b, of_b, middle));
+  PetscCall(PetscFree2(middle, of_b));
+  PetscFunctionReturn(0);
+}
+
+/* Collective. */
+PetscErrorCode EqmAdapt(EqmRegistration r)
+{
+  PetscFunctionBegin;
+  if (r->kind == EQM_IMAGE_SPACE) /* 003: the maps of solids are unique up to rotation, nothing is left to move */
+    PetscFunctionReturn(0);
+  if (r->set.by == EQM_BY_MIDPOINTS)
+    PetscCall(MoveToMiddles(r));
+  else
+    PetscCall(Move(r, &r->a, r->landmarks.vertex, r->goal));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,150 @@
+/* Where landmarks should go: from vertices of B, points of B's surface or points of the target to places of the target.
+ */
+#include "register/registration.h"
+
+/* Do all points lie on the unit sphere (in the unit disk)? */
+static PetscBool LieInTarget(const EqmRegistration r)
+{
+  const EqmLandmarkList *const list = &r->landmarks;
+
+  if (list->width != r->dim || r->kind == EQM_IMAGE_SPACE) return PETSC_FALSE;
+  for (PetscInt i = 0; i < list->num; i++) {
+    PetscReal squared = 0.;
+    for (PetscInt k = 0; k < r->dim; k++) squared += PetscSqr(list->other[r->dim * i + k]);
+    const PetscReal length = PetscSqrtReal(squared);
+    if (length > 1.01 || (r->kind == EQM_IMAGE_SPHERE && length < .99)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* Points of the target are taken to it exactly: onto the sphere, into the disk. */
+static PetscErrorCode TakeTargetPoints(EqmRegistration r)
+{
+  const EqmLandmarkList *const list = &r->landmarks;
+
+  PetscFunctionBegin;
+  if (!LieInTarget(r))
+    EqmFail(r->comm, EQM_ERR_USAGE,
+            "the landmarks' points do not lie %s: %" PetscInt_FMT
+            " coordinates each, within 1 %%, are wanted; with -landmark_points surface they are points of B",
+            r->kind == EQM_IMAGE_SPHERE ? "on the unit sphere" : "in the unit disk", r->dim);
+  for (PetscInt i = 0; i < list->num; i++) {
+    PetscReal squared = 0., length;
+    for (PetscInt k = 0; k < r->dim; k++) squared += PetscSqr(list->other[r->dim * i + k]);
+    length = PetscSqrtReal(squared);
+    for (PetscInt k = 0; k < r->dim; k++)
+      r->goal[r->dim * i + k] =
+          list->other[r->dim * i + k] / (r->kind == EQM_IMAGE_SPHERE || length > 1. ? length : 1.);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Points in space go to the closest point of B, and with it to its place in the target. Rank 0 asks. */
+static PetscErrorCode TakeSurfacePoints(EqmRegistration r)
+{
+  const EqmLandmarkList *const list = &r->landmarks;
+  const PetscInt num = r->b.mesh->rank == 0 ? list->num : 0;
+  EqmLocator locator;
+
+  PetscFunctionBegin;
+  if (list->width != 3)
+    EqmFail(r->comm, EQM_ERR_USAGE, "points of B have three coordinates; the landmarks have %" PetscInt_FMT,
+            list->width);
+  if (r->set.by == EQM_BY_MIDPOINTS)
+    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too and wants vertices of B for landmarks");
+  PetscCall(EqmLocatorCreate(r->b.mesh, EQM_IMAGE_SPACE, r->b.mesh->position, &locator));
+  PetscCall(EqmLocatorFind(locator, num, list->other, &r->on_b));
+  PetscCall(EqmLocatorDestroy(&locator));
+  PetscCall(EqmLocationInterpolate(r->on_b, r->b.mesh, r->dim, r->b.x, r->goal));
+  PetscCallMPI(MPI_Bcast(r->goal, (PetscMPIInt)(r->dim * list->num), MPIU_REAL, 0, r->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Vertices of B among the landmarks. */
+static PetscErrorCode VerticesOfB(EqmRegistration r, PetscInt **vertices)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(r->landmarks.num, vertices));
+  for (PetscInt i = 0; i < r->landmarks.num; i++) (*vertices)[i] = (PetscInt)r->landmarks.other[i];
+  PetscFunctionReturn(0);
+}
+
+/* Fill r->goal. Collective. */
+PetscErrorCode EqmFindGoals(EqmRegistration r)
+{
+  const EqmLandmarkList *const list = &r->landmarks;
+  const PetscBool in_target = (PetscBool)(r->set.points == EQM_POINTS_TARGET ||
+                                          (r->set.points == EQM_POINTS_AUTO && (r->bare || LieInTarget(r))));
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(r->dim * list->num, &r->goal));
+  if (list->width == 1) {
+    PetscInt *vertices;
+    if (r->bare) EqmFail(r->comm, EQM_ERR_USAGE, "the target has no vertices: give landmarks as points of it");
+    PetscCall(VerticesOfB(r, &vertices));
+    PetscCall(EqmSideGather(&r->b, list->num, vertices, r->dim, r->b.x, r->goal));
+    PetscCall(PetscFree(vertices));
+  } else if (in_target) {
+    if (!r->set.quiet && !r->bare)
+      PetscCall(PetscPrintf(r->comm, "landmarks: their points are points of the unit %s\n", r->target));
+    PetscCall(TakeTargetPoints(r));
+  } else {
+    PetscCall(TakeSurfacePoints(r));
+  }
+  if (r->set.by == EQM_BY_MIDPOINTS && list->width != 1)
+    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too and wants vertices of B for landmarks");
+  PetscFunctionReturn(0);
+}
+
+/* Where the landmarks of B are, by `values` per vertex of B, `width` each. */
+static PetscErrorCode GatherOnB(EqmRegistration r, PetscInt width, const PetscReal *values, PetscReal *gathered)
+{
+  PetscInt *vertices;
+
+  PetscFunctionBegin;
+  if (r->on_b) {
+    PetscCall(EqmLocationInterpolate(r->on_b, r->b.mesh, width, values, gathered));
+    PetscCallMPI(MPI_Bcast(gathered, (PetscMPIInt)(width * r->landmarks.num), MPIU_REAL, 0, r->comm));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(VerticesOfB(r, &vertices));
+  PetscCall(EqmSideGather(&r->b, r->landmarks.num, vertices, width, values, gathered));
+  PetscCall(PetscFree(vertices));
+  PetscFunctionReturn(0);
+}
+
+static void MeanAndMax(PetscInt num, PetscInt dim, const PetscReal *p, const PetscReal *q, PetscReal unit,
+                       PetscReal *mean, PetscReal *most)
+{
+  *mean = *most = 0.;
+  for (PetscInt i = 0; i < num; i++) {
+    PetscReal squared = 0., distance;
+    for (PetscInt k = 0; k < dim; k++) squared += PetscSqr(p[dim * i + k] - q[dim * i + k]);
+    distance = PetscSqrtReal(squared) / unit;
+    *mean += distance / num;
+    *most = PetscMax(*most, distance);
+  }
+}
+
+/* Fill the figures of landmarks, in the target and, where they have a place on B, in space. Collective. */
+PetscErrorCode EqmLandmarkErrors(EqmRegistration r)
+{
+  const PetscInt num = r->landmarks.num;
+  const PetscBool on_b = (PetscBool)(!r->bare && (r->landmarks.width == 1 || r->on_b));
+  EqmRegisterFigures *const f = &r->figures;
+  PetscReal *p, *q;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(3 * num, &p, 3 * num, &q));
+  PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, r->dim, r->a.x, p));
+  PetscCall(PetscArraycpy(q, r->goal, r->dim * num));
+  if (on_b) PetscCall(GatherOnB(r, r->dim, r->b.x, q)); /* B may have moved */
+  MeanAndMax(num, r->dim, p, q, 1., &f->landmark_mean, &f->landmark_max);
+  if (on_b) {
+    PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, 3, r->image, p));
+    PetscCall(GatherOnB(r, 3, r->b.mesh->position, q));
+    MeanAndMax(num, 3, p, q, EqmSideRadius(r, &r->b), &f->landmark_space_mean, &f->landmark_space_max);
+  }
+  PetscCall(PetscFree2(p, q));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,88 @@
+/* What the files of a registration know of each other. */
+#ifndef EQM_REGISTRATION_H
+#define EQM_REGISTRATION_H
+
+#include <equimap/register.h>
+#include "register/landmark_list.h"
+
+typedef enum { EQM_BY_DIRECT, EQM_BY_MIDPOINTS } EqmRegisterBy;
+typedef enum { EQM_LANDMARKS_FLOW, EQM_LANDMARKS_ROTATION } EqmLandmarkStart;
+typedef enum { EQM_POINTS_AUTO, EQM_POINTS_SURFACE, EQM_POINTS_TARGET } EqmLandmarkPoints;
+
+typedef struct {
+  char landmarks[PETSC_MAX_PATH_LEN], map_a[PETSC_MAX_PATH_LEN], map_b[PETSC_MAX_PATH_LEN];
+  PetscBool has_landmarks, quiet;
+  EqmRegisterBy by;
+  EqmLandmarkStart start;
+  EqmLandmarkPoints points;
+  PetscReal weight, tolerance, reach;
+  PetscInt stages;
+} EqmRegisterSettings;
+
+/* -ratio_tol of the maps of surfaces unless the user has another. Maps that are composed need not be better than their
+   composition; and the farther a map is polished, the more rounding decides which of many equally good ones it becomes
+   (docs/methods.md, Uniqueness). */
+#define EQM_REGISTER_RATIO_TOL 3e-3
+
+/* One of the two meshes with its map to the target. */
+typedef struct {
+  const char *name; /* "A" or "B" */
+  EqmSoup soup;
+  EqmMesh mesh;
+  EqmMap map;        /* f or g as computed or read */
+  PetscReal *x;      /* places in the target per local vertex, moved by rotations and h */
+  PetscReal *weight; /* per owned vertex: its share of the measure, sum one */
+} EqmSide;
+
+/* What is measured of a correspondence. Lengths of the target in its own units (radius 1), lengths in space in radii of
+   the disk, sphere or ball that has B's measure. */
+typedef struct {
+  PetscReal landmark_mean, landmark_max;             /* |h(f(p)) - g(q)| */
+  PetscReal landmark_space_mean, landmark_space_max; /* |phi(p) - q| */
+  PetscReal start_left;                              /* what the landmarks' flow left over */
+  PetscReal dissimilarity, dissimilarity_rigid;      /* d(phi) of 003 section 7; after the best rigid motion */
+  PetscReal energy;                                  /* E of h o f */
+  PetscInt64 folds_a, folds_b;                       /* of h o f and, where it was moved, of g */
+} EqmRegisterFigures;
+
+struct _p_EqmRegistration {
+  MPI_Comm comm;
+  EqmLedger ledger;
+  EqmRegisterSettings set;
+  char target[16];
+  EqmImageKind kind;
+  PetscInt dim;   /* coordinates in the target */
+  PetscBool bare; /* B is the target itself */
+  EqmSide a, b;
+  EqmLandmarkList landmarks;
+  PetscReal *goal;  /* dim per landmark: g(q) */
+  EqmLocation on_b; /* landmarks that are points of B's surface: where, asked by rank 0; else NULL */
+  EqmLocation forward, inverse;
+  PetscReal *image, *inverse_image; /* phi per owned vertex of A, phi^-1 per owned vertex of B: three coordinates */
+  EqmMap map;
+  EqmStatus status;
+  char message[EQM_MESSAGE_MAX];
+  EqmRegisterFigures figures;
+};
+
+/* ---- side.c */
+PETSC_INTERN PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *map_file);
+PETSC_INTERN PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side);
+PETSC_INTERN PetscErrorCode EqmSideReset(EqmSide *side);
+/* `width` values of each of `num` vertices (input numbers), from values per owned vertex; the same on every rank.
+   Errors: EQM_ERR_USAGE (a vertex of no cell). Collective. */
+PETSC_INTERN PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *vertices, PetscInt width,
+                                          const PetscReal *values, PetscReal *gathered);
+/* Radius of the disk, sphere or ball that has the side's measure. Not collective. */
+PETSC_INTERN PetscReal EqmSideRadius(const EqmRegistration r, const EqmSide *side);
+/* ---- goals.c */
+PETSC_INTERN PetscErrorCode EqmFindGoals(EqmRegistration r);
+PETSC_INTERN PetscErrorCode EqmLandmarkErrors(EqmRegistration r);
+/* ---- adapt.c */
+PETSC_INTERN PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r);
+PETSC_INTERN PetscErrorCode EqmAdapt(EqmRegistration r);
+/* ---- compose.c */
+PETSC_INTERN PetscErrorCode EqmCompose(EqmRegistration r);
+PETSC_INTERN PetscErrorCode EqmMeasureCorrespondence(EqmRegistration r);
+
+#endif
