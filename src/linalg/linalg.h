@@ -117,4 +117,18 @@ PETSC_INTERN PetscErrorCode EqmLinearSetUpSubstructure(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpMumps(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpMultigrid(EqmLinear linear);
 
+/* ---- square matrices that are not positive definite (general.c) */
+typedef struct _p_EqmGeneral *EqmGeneral;
+/* `symmetric`: L D L^T with pivots, else L U; `coupled`: counts as a coupled factorisation. The arrays of `unknowns`
+   must outlive it. Collective. */
+PETSC_INTERN PetscErrorCode EqmGeneralCreate(EqmMesh mesh, const EqmUnknowns *unknowns, PetscBool symmetric,
+                                             PetscBool coupled, EqmGeneral *general);
+PETSC_INTERN PetscErrorCode EqmGeneralDestroy(EqmGeneral *general);
+/* Assemble the cells' matrices (here they may be unsymmetric), add `shift` to the diagonal and factor. `success` is
+   false on every rank if the matrix is singular. Counts a factorisation. Collective. */
+PETSC_INTERN PetscErrorCode EqmGeneralFactor(EqmGeneral general, EqmCellMatrix cell_matrix, void *context,
+                                             PetscReal shift, PetscBool *success);
+/* Solve in place for right-hand sides that are stored one after the other. Collective. */
+PETSC_INTERN PetscErrorCode EqmGeneralSolve(EqmGeneral general, PetscInt num_rhs, PetscReal *columns);
+
 #endif

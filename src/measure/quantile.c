@@ -106,3 +106,29 @@ PetscErrorCode EqmStatisticsOf(MPI_Comm comm, PetscInt n, PetscReal *sample, Eqm
   statistics->p95 = quantile[3];
   PetscFunctionReturn(0);
 }
+
+/* Mean of the entries of the union of all ranks' samples between two quantiles, these included; the sample is sorted in
+   place. An empty union gives zero. Collective. */
+PetscErrorCode EqmMeanBetween(MPI_Comm comm, PetscInt n, PetscReal *sample, PetscReal from, PetscReal to,
+                              PetscReal *mean)
+{
+  PetscInt64 total = n, rank[2];
+  PetscReal value[2], sum[2] = {0., 0.};
+
+  PetscFunctionBegin;
+  *mean = 0.;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_INT64, MPI_SUM, comm));
+  if (total == 0) PetscFunctionReturn(0);
+  PetscCall(PetscSortReal(n, sample));
+  rank[0] = (PetscInt64)PetscFloorReal(from * (total - 1));
+  rank[1] = (PetscInt64)PetscCeilReal(to * (total - 1));
+  PetscCall(OrderStatistics(comm, n, sample, 2, rank, value));
+  for (PetscInt k = 0; k < n; k++) {
+    if (sample[k] < value[0] || sample[k] > value[1]) continue;
+    sum[0] += sample[k];
+    sum[1] += 1.;
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, comm));
+  *mean = sum[0] / sum[1];
+  PetscFunctionReturn(0);
+}

@@ -5,5 +5,7 @@
 #include <equimap/map.h>
 
 PETSC_INTERN PetscErrorCode EqmStatisticsOf(MPI_Comm comm, PetscInt n, PetscReal *sample, EqmStatistics *statistics);
+PETSC_INTERN PetscErrorCode EqmMeanBetween(MPI_Comm comm, PetscInt n, PetscReal *sample, PetscReal from, PetscReal to,
+                                           PetscReal *mean);
 
 #endif

@@ -39,6 +39,11 @@ typedef struct {
   /* lbfgs, rgd */
   PetscInt lbfgs_refresh, lbfgs_memory;
   PetscEnum rgd_line_search; /* an EqmRgdLineSearch */
+  /* euler-explicit, euler-implicit, qiem */
+  PetscReal flow_step, flow_tol;
+  PetscBool flow_moebius;
+  char qiem_phase1[8], qiem_phase2[8]; /* letters of the strategies in use */
+  PetscReal qiem_factor, qiem_rise;
 } EqmSettings;
 
 struct _p_EqmSolver {
@@ -77,7 +82,7 @@ struct _p_EqmSolver {
 };
 
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,
-    EqmMethodRiemann;
+    EqmMethodRiemann, EqmMethodQiem, EqmMethodEulerExplicit, EqmMethodEulerImplicit;
 PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 
 /* Refresh solver->image and solver->totals from solver->place. Collective. */

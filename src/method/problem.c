@@ -119,6 +119,9 @@ static const EqmOffer conformal_in_disk[] = {
 
 static const EqmOffer conformal_on_sphere[] = {
     {&EqmMethodLbfgs, "conformal", 100, 0., 0., 1e-5},
+    {&EqmMethodQiem, "normals", 500, 0., 0., 0.},
+    {&EqmMethodEulerExplicit, "gauss", 10000, 0., 0., 0.},
+    {&EqmMethodEulerImplicit, "gauss", 500, 0., 0., 0.},
 };
 
 #define OFFERS(list) .offers = (list), .num_offers = sizeof(list) / sizeof((list)[0])

@@ -15,7 +15,12 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
                             .stagnation = 5,
                             .ncg_guard = PETSC_TRUE,
                             .lbfgs_refresh = 25,
-                            .lbfgs_memory = 10};
+                            .lbfgs_memory = 10,
+                            .flow_tol = 1e-9,
+                            .qiem_phase1 = "abc",
+                            .qiem_phase2 = "abc",
+                            .qiem_factor = 1.05,
+                            .qiem_rise = .05};
   PetscFunctionReturn(0);
 }
 

@@ -165,9 +165,10 @@ static PetscErrorCode Iterate(EqmSolver solver)
     }
     if (outcome == EQM_STEP_STALLED) {
       solver->status = EQM_STATUS_NOT_CONVERGED;
-      PetscCall(PetscStrncpy(solver->message,
-                             "no step decreases the objective any more: the limit of this method and this arithmetic",
-                             sizeof(solver->message)));
+      if (!solver->message[0])
+        PetscCall(PetscStrncpy(solver->message,
+                               "no step decreases the objective any more: the limit of this method and this arithmetic",
+                               sizeof(solver->message)));
       break;
     }
     solver->iteration++;

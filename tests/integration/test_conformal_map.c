@@ -74,6 +74,46 @@ static PetscErrorCode TestSphereItself(void)
   PetscFunctionReturn(0);
 }
 
+/* All methods go to the same map: the harmonic one differs from that of least conformal energy by the mesh's error. */
+static PetscErrorCode TestSameMap(const char *options, PetscReal tolerance)
+{
+  TestMesh test;
+  EqmSolver solver[2];
+  PetscReal farthest = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "head", 500, 1, &test));
+  PetscCall(TestSolve(test.mesh, "conformal", "", &solver[0]));
+  PetscCall(TestSolve(test.mesh, "conformal", options, &solver[1]));
+  CHECK(solver[1]->status == EQM_STATUS_CONVERGED, "%s: %s", options, solver[1]->message);
+  for (PetscInt k = 1; k < test.mesh->num_local; k++) {
+    const PetscReal *const x = solver[0]->place.x, *const y = solver[1]->place.x;
+    farthest = PetscMax(farthest, PetscAbsReal(Distance(x, x + 3 * k) - Distance(y, y + 3 * k)));
+  }
+  CHECK(farthest < tolerance, "%s: distances differ by %g", options, (double)farthest);
+  PetscCall(EqmSolverDestroy(&solver[0]));
+  PetscCall(EqmSolverDestroy(&solver[1]));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* Beyond its limit the explicit method ends without success. */
+static PetscErrorCode TestExplicitLimit(const char *options, PetscBool stable)
+{
+  TestMesh test;
+  EqmSolver solver;
+  PetscBool rises;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "head", 500, 1, &test));
+  PetscCall(TestSolve(test.mesh, "conformal", options, &solver));
+  rises = (PetscBool)(strstr(solver->message, "too long") != NULL);
+  CHECK(rises == !stable && solver->status == EQM_STATUS_NOT_CONVERGED, "%s: %s", options, solver->message);
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
 /* The mesh on all ranks together and on each alone. */
 static PetscErrorCode TestRanks(const char *options, PetscReal tolerance)
 {
@@ -125,7 +165,17 @@ int main(int argc, char **argv)
   PetscCall(TestMethod("head", 1500, "-start tutte", 1.));
   PetscCall(TestMethod("head", 1500, "-start gauss -start_center", 1.));
   PetscCall(TestSphereItself());
+  PetscCall(TestSameMap("-method qiem", .01));
+  PetscCall(TestSameMap("-method qiem -flow_moebius -flow_step 50 -qiem_phase2 a", .01));
+  PetscCall(TestSameMap("-method qiem -start conformal -qiem_phase1 none", .01));
+  PetscCall(TestSameMap("-method euler-implicit -flow_tol 1e-8", .01));
+  PetscCall(TestSameMap("-method euler-explicit -flow_tol 1e-6", .05));
+  PetscCall(TestExplicitLimit("-method euler-explicit -max_it 200 -flow_tol 0", PETSC_TRUE));
+  PetscCall(TestExplicitLimit("-method euler-explicit -max_it 200 -flow_tol 0 -flow_step 2", PETSC_FALSE));
   PetscCall(TestRanks("", 1e-7));
+  PetscCall(TestRanks("-method qiem -max_it 5", 1e-7));
+  PetscCall(TestRanks("-method euler-implicit -max_it 2", 1e-7));
+  PetscCall(TestRanks("-method euler-explicit -max_it 5", 1e-7));
   PetscCall(TestThreads(""));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
