@@ -5,7 +5,8 @@
 #include <petscsf.h>
 #include <equimap/soup.h>
 
-/* Vertices are numbered 0 .. num_owned-1 (owned; reverse Cuthill-McKee within the rank), then num_owned .. num_local-1
+/* Vertices are numbered 0 .. num_owned-1 (owned; reverse Cuthill-McKee within
+   the rank, of solids within each block), then num_owned .. num_local-1
    (ghosts, by global number). Globally a rank's owned vertices are contiguous from vertex_start. Every cell that
    touches an owned vertex is here: one ghost layer, so that an owned vertex's gradient needs no reverse exchange. */
 typedef struct _p_EqmMesh *EqmMesh;

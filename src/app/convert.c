@@ -1,15 +1,15 @@
-/* equimap convert IN OUT: from one mesh format to another, mended or refined on the way. */
+/* equimap convert IN OUT: from one mesh format to another, mended, refined or peeled on the way. */
 #include "app.h"
 
 typedef struct {
-  PetscBool repair;
+  PetscBool repair, boundary;
   PetscInt refine;
 } ConvertOptions;
 
 static PetscErrorCode ReadOptions(ConvertOptions *options)
 {
   PetscFunctionBegin;
-  options->repair = PETSC_FALSE;
+  options->repair = options->boundary = PETSC_FALSE;
   options->refine = 0;
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Conversion of meshes (convert)", "convert");
   PetscCall(
@@ -19,7 +19,37 @@ static PetscErrorCode ReadOptions(ConvertOptions *options)
                        "convert", options->repair, &options->repair, NULL));
   PetscCall(PetscOptionsInt("-refine", "split every triangle into 4, every tetrahedron into 8, so many times",
                             "convert", options->refine, &options->refine, NULL));
+  PetscCall(PetscOptionsBool("-boundary",
+                             "write the surface around a solid: its boundary vertices in their order, triangles that "
+                             "look outward",
+                             "convert", options->boundary, &options->boundary, NULL));
   PetscOptionsEnd();
+  PetscFunctionReturn(0);
+}
+
+/* The surface of a solid takes its place. Collective. */
+static PetscErrorCode TakeBoundary(EqmSoup *soup)
+{
+  EqmDiagnosis diagnosis;
+  EqmLedger ledger;
+  EqmMesh solid;
+  EqmSurface surface;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupDiagnose(*soup, &diagnosis));
+  if (diagnosis.finding[EQM_FINDING_BAD_INDEX].count || diagnosis.finding[EQM_FINDING_DUPLICATE_CELL].count) {
+    EqmFail((*soup)->comm, EQM_ERR_MESH, "%s: its boundary is unclear, see equimap check; -repair may help",
+            (*soup)->file);
+  }
+  PetscCall(EqmLedgerCreate((*soup)->comm, &ledger));
+  PetscCall(EqmMeshCreate(*soup, ledger, &solid));
+  PetscCall(EqmSurfaceCreate(solid, &surface));
+  PetscCall(EqmMeshDestroy(&solid));
+  PetscCall(EqmLedgerDestroy(&ledger));
+  PetscCall(EqmSoupDestroy(soup));
+  *soup = surface->soup;
+  surface->soup = NULL;
+  PetscCall(EqmSurfaceDestroy(&surface));
   PetscFunctionReturn(0);
 }
 
@@ -28,14 +58,14 @@ static PetscErrorCode PrintUsage(void)
   PetscFunctionBegin;
   PetscCall(PetscPrintf(
       PETSC_COMM_WORLD,
-      "\nusage: equimap convert IN OUT [-repair] [-refine TIMES]\n"
+      "\nusage: equimap convert IN OUT [-repair] [-refine TIMES] [-boundary]\n"
       "The suffix of OUT chooses its format; IN's is seen from its content. Vertices keep their numbers; new ones\n"
       "come after them.\n"));
   PetscFunctionReturn(0);
 }
 
 /* Run `equimap convert`. Collective on PETSC_COMM_WORLD. Errors: EQM_ERR_USAGE, and those of EqmSoupRead,
-   EqmSoupRepair, EqmSoupRefine and EqmSoupWrite. */
+   EqmSoupRepair, EqmSoupRefine, EqmSurfaceCreate and EqmSoupWrite. */
 PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status)
 {
   ConvertOptions options;
@@ -63,6 +93,7 @@ PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status)
     PetscCall(PetscFree(parent));
   }
   if (options.refine) PetscCall(EqmSoupRefine(&soup, options.refine));
+  if (options.boundary) PetscCall(TakeBoundary(&soup));
   PetscCall(EqmSoupWrite(soup, line->argument[1]));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %" PetscInt_FMT " vertices, %" PetscInt_FMT " %s -> %s\n",
                         line->argument[0], soup->num_vertices, soup->num_cells,

@@ -2,26 +2,8 @@
 #include "mesh/build.h"
 #include "energy/kernel.h"
 
-/* Enough blocks for the threads of a large node to share, few enough that only a few per cent of the cells are visited
-   twice. The number depends on the mesh alone, so that every sum has one order. */
-enum { MOST_BLOCKS = 64, LEAST_BLOCK = 256 };
-
-static PetscInt BlockOf(EqmMesh mesh, PetscInt vertex)
-{
-  PetscInt low = 0, high = mesh->num_blocks;
-
-  while (high - low > 1) {
-    const PetscInt middle = (low + high) / 2;
-    if (mesh->block_vertex[middle] <= vertex)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 /* The blocks that a cell's owned vertices lie in, each once; returns how many. */
-static PetscInt BlocksOfCell(EqmMesh mesh, PetscInt cell, PetscInt blocks[4])
+static PetscInt BlocksOfCell(EqmMesh mesh, const PetscInt *block_of, PetscInt cell, PetscInt blocks[4])
 {
   PetscInt count = 0;
 
@@ -29,35 +11,34 @@ static PetscInt BlocksOfCell(EqmMesh mesh, PetscInt cell, PetscInt blocks[4])
     const PetscInt v = mesh->cells[mesh->cell_size * cell + a];
     PetscBool seen = PETSC_FALSE;
     if (v >= mesh->num_owned) continue;
-    const PetscInt block = BlockOf(mesh, v);
-    for (PetscInt k = 0; k < count; k++) seen = (PetscBool)(seen || blocks[k] == block);
-    if (!seen) blocks[count++] = block;
+    for (PetscInt k = 0; k < count; k++) seen = (PetscBool)(seen || blocks[k] == block_of[v]);
+    if (!seen) blocks[count++] = block_of[v];
   }
   return count;
 }
 
-/* Cut the owned vertices into contiguous blocks and list for each the cells that touch it. Not collective. */
+/* List for each block of vertices the cells that touch it. Not collective. */
 PetscErrorCode EqmMeshMakeBlocks(EqmMesh mesh)
 {
-  PetscInt blocks[4];
+  PetscInt blocks[4], *block_of;
 
   PetscFunctionBegin;
-  mesh->num_blocks = PetscMax(1, PetscMin(MOST_BLOCKS, mesh->num_owned / LEAST_BLOCK));
-  PetscCall(PetscMalloc1(mesh->num_blocks + 1, &mesh->block_vertex));
-  for (PetscInt b = 0; b <= mesh->num_blocks; b++) {
-    mesh->block_vertex[b] = (PetscInt)((PetscInt64)mesh->num_owned * b / mesh->num_blocks);
-  }
+  PetscCall(PetscMalloc1(mesh->num_owned, &block_of));
   PetscCall(PetscCalloc1(mesh->num_blocks + 2, &mesh->block_start));
+  for (PetscInt b = 0; b < mesh->num_blocks; b++) {
+    for (PetscInt v = mesh->block_vertex[b]; v < mesh->block_vertex[b + 1]; v++) block_of[v] = b;
+  }
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    const PetscInt count = BlocksOfCell(mesh, c, blocks);
+    const PetscInt count = BlocksOfCell(mesh, block_of, c, blocks);
     for (PetscInt k = 0; k < count; k++) mesh->block_start[blocks[k] + 2]++;
   }
   for (PetscInt b = 0; b < mesh->num_blocks; b++) mesh->block_start[b + 2] += mesh->block_start[b + 1];
   PetscCall(PetscMalloc1(mesh->block_start[mesh->num_blocks + 1], &mesh->block_cell));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    const PetscInt count = BlocksOfCell(mesh, c, blocks);
+    const PetscInt count = BlocksOfCell(mesh, block_of, c, blocks);
     for (PetscInt k = 0; k < count; k++) mesh->block_cell[mesh->block_start[blocks[k] + 1]++] = c;
   }
+  PetscCall(PetscFree(block_of));
   PetscFunctionReturn(0);
 }
 

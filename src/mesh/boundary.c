@@ -44,31 +44,48 @@ static PetscErrorCode GroupFacets(EqmMesh mesh, PetscInt **start, PetscInt **fac
   PetscFunctionReturn(0);
 }
 
+/* The facets of one cell only, as (cell, corner), ordered by their smallest vertex. */
+static PetscErrorCode LoneFacets(EqmMesh mesh, PetscInt *count, PetscInt **kept)
+{
+  const PetscInt cs = mesh->cell_size;
+  PetscInt *start, *facet, (*key)[3], most = 0;
+
+  PetscFunctionBegin;
+  PetscCall(GroupFacets(mesh, &start, &facet));
+  for (PetscInt v = 0; v < mesh->num_owned; v++) most = PetscMax(most, start[v + 1] - start[v]);
+  PetscCall(PetscMalloc1(start[mesh->num_owned], kept));
+  PetscCall(PetscMalloc1(most, &key));
+  *count = 0;
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    const PetscInt n = start[v + 1] - start[v];
+
+    for (PetscInt q = 0; q < n; q++) {
+      key[q][2] = -1; /* of an edge */
+      (void)FacetKey(mesh, facet[start[v] + q] / cs, facet[start[v] + q] % cs, key[q]);
+    }
+    for (PetscInt q = 0; q < n; q++) {
+      PetscInt r = 0;
+      while (r < n && (r == q || key[r][1] != key[q][1] || key[r][2] != key[q][2])) r++;
+      if (r == n) (*kept)[(*count)++] = facet[start[v] + q];
+    }
+  }
+  PetscCall(PetscFree(key));
+  PetscCall(PetscFree(start));
+  PetscCall(PetscFree(facet));
+  PetscFunctionReturn(0);
+}
+
 /* Find the facets of one cell only and the vertices on them. Collective. */
 PetscErrorCode EqmMeshFindBoundary(EqmMesh mesh)
 {
   const PetscInt cs = mesh->cell_size, fs = cs - 1;
-  PetscInt *start, *facet, *kept, count = 0, num_owned_boundary = 0;
+  PetscInt *kept, count, num_owned_boundary = 0;
   PetscReal *flag;
 
   PetscFunctionBegin;
-  PetscCall(GroupFacets(mesh, &start, &facet));
-  PetscCall(PetscMalloc1(start[mesh->num_owned], &kept));
+  PetscCall(LoneFacets(mesh, &count, &kept));
   PetscCall(PetscMalloc1(mesh->num_local, &mesh->on_boundary));
   PetscCall(PetscCalloc1(mesh->num_local, &flag));
-  for (PetscInt v = 0; v < mesh->num_owned; v++) {
-    for (PetscInt q = start[v]; q < start[v + 1]; q++) {
-      PetscInt key[3], other[3];
-      PetscBool alone = PETSC_TRUE;
-      FacetKey(mesh, facet[q] / cs, facet[q] % cs, key);
-      for (PetscInt r = start[v]; r < start[v + 1] && alone; r++) {
-        if (r == q) continue;
-        FacetKey(mesh, facet[r] / cs, facet[r] % cs, other);
-        alone = (PetscBool)(key[1] != other[1] || (fs == 3 && key[2] != other[2]));
-      }
-      if (alone) kept[count++] = facet[q];
-    }
-  }
   PetscCall(PetscMalloc1(fs * count, &mesh->boundary_facets));
   PetscCall(PetscMalloc1(count, &mesh->boundary_order));
   mesh->num_boundary_facets = count;
@@ -81,14 +98,12 @@ PetscErrorCode EqmMeshFindBoundary(EqmMesh mesh)
       flag[v] = 1.;
     }
   }
+  PetscCall(PetscFree(kept));
   PetscCall(EqmMeshUpdateGhosts(mesh, 1, flag));
   for (PetscInt v = 0; v < mesh->num_local; v++) mesh->on_boundary[v] = (PetscBool)(flag[v] > 0.);
   for (PetscInt v = 0; v < mesh->num_owned; v++) num_owned_boundary += mesh->on_boundary[v];
   PetscCall(MPIU_Allreduce(&num_owned_boundary, &mesh->num_boundary_vertices, 1, MPIU_INT, MPI_SUM, mesh->comm));
   PetscCall(PetscFree(flag));
-  PetscCall(PetscFree(start));
-  PetscCall(PetscFree(facet));
-  PetscCall(PetscFree(kept));
   PetscFunctionReturn(0);
 }
 

@@ -32,6 +32,12 @@ PETSC_INTERN PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_siz
 PETSC_INTERN PetscErrorCode EqmGraphReset(EqmGraph *graph);
 PETSC_INTERN PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *owner_of_slab);
 PETSC_INTERN PetscErrorCode EqmOrderCuthillMcKee(const EqmGraph *graph, PetscInt *new_number);
+PETSC_INTERN PetscErrorCode EqmRunMetis(PetscInt num_parts, PetscInt n, PetscInt *start, PetscInt *neighbor,
+                                        PetscInt *part);
+PETSC_INTERN PetscInt EqmNumBlocks(PetscInt cell_size, PetscInt num_vertices);
+PETSC_INTERN PetscErrorCode EqmCutBlocks(PetscInt num_vertices, PetscInt num_blocks, PetscInt *block_vertex);
+PETSC_INTERN PetscErrorCode EqmOrderBlocks(const EqmGraph *graph, PetscInt num_blocks, PetscInt *new_number,
+                                           PetscInt *block_vertex);
 PETSC_INTERN PetscErrorCode EqmMeshFindBoundary(EqmMesh mesh);
 PETSC_INTERN PetscErrorCode EqmMeshMakeBlocks(EqmMesh mesh);
 PETSC_INTERN PetscErrorCode EqmMeshMeasure(EqmMesh mesh, const PetscReal *cell_density);

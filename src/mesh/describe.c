@@ -219,8 +219,9 @@ static PetscErrorCode AppendWrongCells(const EqmDiagnosis *diagnosis, const Pets
            "TetGen or Gmsh, or map it as a surface";
   }
   if (diagnosis->cell_size == 4 && wants_surface) {
-    line = "the mesh is a solid of tetrahedra, a surface of triangles is wanted: map it with `ball`, or extract its "
-           "boundary";
+    line =
+        "the mesh is a solid of tetrahedra, a surface of triangles is wanted: map it with `ball`, or take its surface "
+        "with `convert -boundary`";
   }
   if (!line) PetscFunctionReturn(0);
   PetscCall(AppendLine("error: ", line, text, length));

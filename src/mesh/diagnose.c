@@ -50,15 +50,16 @@ static void CountTetrahedronFaces(const EqmVicinity *vicinity, PetscInt v, const
   }
 }
 
-static PetscErrorCode DiagnoseLinks(const EqmVicinity *vicinity, EqmFinding *finding, Counts *counts)
+/* Also marks the boundary vertices among the owned ones. */
+static PetscErrorCode DiagnoseLinks(const EqmVicinity *vicinity, PetscBool *on_boundary, EqmFinding *finding,
+                                    Counts *counts)
 {
   EqmLink link;
 
   PetscFunctionBegin;
   PetscCall(EqmLinkCreate(vicinity, &link));
   for (PetscInt v = 0; v < vicinity->num_owned; v++) {
-    PetscBool boundary = PETSC_FALSE;
-
+    on_boundary[v] = PETSC_FALSE;
     EqmLinkCompute(vicinity, v, &link);
     if (!link.num_vertices) {
       EqmFindingAdd(&finding[EQM_FINDING_UNREFERENCED], vicinity->input[v], -1, -1, -1);
@@ -73,8 +74,8 @@ static PetscErrorCode DiagnoseLinks(const EqmVicinity *vicinity, EqmFinding *fin
     if (link.manifold && !link.regular) {
       EqmFindingAdd(&finding[EQM_FINDING_NON_MANIFOLD_VERTEX], vicinity->input[v], -1, -1, -1);
     }
-    for (PetscInt i = 0; i < link.num_vertices; i++) boundary = (PetscBool)(boundary || link.on_boundary[i]);
-    if (boundary) counts->boundary_vertices++;
+    for (PetscInt i = 0; i < link.num_vertices && !on_boundary[v]; i++) on_boundary[v] = link.on_boundary[i];
+    if (on_boundary[v]) counts->boundary_vertices++;
   }
   PetscCall(EqmLinkReset(&link));
   for (PetscInt c = 0; c < vicinity->num_cells; c++) {
@@ -137,14 +138,14 @@ static PetscErrorCode DiagnoseVicinity(EqmVicinity *vicinity, EqmDiagnosis *diag
 
   PetscFunctionBegin;
   PetscCall(EqmDiagnoseDuplicateVertices(vicinity, &finding[EQM_FINDING_DUPLICATE_VERTEX]));
-  PetscCall(DiagnoseLinks(vicinity, finding, counts));
+  PetscCall(PetscMalloc1(vicinity->num_local, &on_boundary));
+  PetscCall(DiagnoseLinks(vicinity, on_boundary, finding, counts));
   PetscCall(DiagnoseComponents(vicinity, &finding[EQM_FINDING_COMPONENTS]));
   if (counts->boundary_edges) {
-    PetscCall(PetscMalloc1(vicinity->num_local, &on_boundary));
-    PetscCall(EqmVicinityMarkBoundary(vicinity, on_boundary));
+    PetscCall(EqmVicinityShareFlags(vicinity, on_boundary));
     PetscCall(EqmDiagnoseBoundary(vicinity, on_boundary, diagnosis));
-    PetscCall(PetscFree(on_boundary));
   }
+  PetscCall(PetscFree(on_boundary));
   inconsistent = finding[EQM_FINDING_INCONSISTENT_ORIENTATION].count;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inconsistent, 1, MPIU_INT64, MPI_SUM, vicinity->comm));
   if (vicinity->cell_size == 3 && inconsistent) {

@@ -82,6 +82,7 @@ PETSC_INTERN PetscErrorCode EqmDiagnoseBoundary(const EqmVicinity *vicinity, con
 PETSC_INTERN PetscErrorCode EqmDiagnoseOrientation(const EqmVicinity *vicinity, EqmFinding *finding);
 PETSC_INTERN PetscErrorCode EqmVicinityOrient(const EqmVicinity *vicinity, PetscInt *label, PetscBool *turned,
                                               PetscBool *conflict);
+PETSC_INTERN PetscErrorCode EqmVicinityShareFlags(const EqmVicinity *vicinity, PetscBool *flag);
 PETSC_INTERN PetscErrorCode EqmVicinityMarkBoundary(const EqmVicinity *vicinity, PetscBool *on_boundary);
 
 #endif

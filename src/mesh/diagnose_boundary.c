@@ -1,8 +1,8 @@
 /* The boundary: its loops (of a solid: its surfaces), chords between its vertices, cells without an interior vertex. */
 #include "mesh/diagnose.h"
 
-/* From owned vertices to ghosts. */
-static PetscErrorCode ShareFlags(const EqmVicinity *vicinity, PetscBool *flag)
+/* Bring flags of the owned vertices to the ghosts. Collective. */
+PetscErrorCode EqmVicinityShareFlags(const EqmVicinity *vicinity, PetscBool *flag)
 {
   PetscFunctionBegin;
   PetscCall(PetscSFBcastBegin(vicinity->ghosts, MPIU_BOOL, flag, flag, MPI_REPLACE));
@@ -25,7 +25,7 @@ PetscErrorCode EqmVicinityMarkBoundary(const EqmVicinity *vicinity, PetscBool *o
     }
   }
   PetscCall(EqmLinkReset(&link));
-  PetscCall(ShareFlags(vicinity, on_boundary));
+  PetscCall(EqmVicinityShareFlags(vicinity, on_boundary));
   PetscFunctionReturn(0);
 }
 
@@ -55,7 +55,7 @@ static PetscErrorCode WalkBoundary(const EqmVicinity *vicinity, const PetscBool 
 }
 
 /* Fill in what the boundary tells: its loops or surfaces (in `finding[EQM_FINDING_HOLES]` one vertex of each, counted
-   all), chords, cells without an interior vertex. `on_boundary` is EqmVicinityMarkBoundary's. The findings are this
+   all), chords, cells without an interior vertex. `on_boundary` tells of all local vertices. The findings are this
    rank's, not yet merged. Collective. */
 PetscErrorCode EqmDiagnoseBoundary(const EqmVicinity *vicinity, const PetscBool *on_boundary, EqmDiagnosis *diagnosis)
 {

@@ -106,3 +106,60 @@ PetscErrorCode EqmOrderCuthillMcKee(const EqmGraph *graph, PetscInt *new_number)
   PetscCall(PetscFree2(start, column));
   PetscFunctionReturn(0);
 }
+
+/* Enough blocks for the threads of a large node to share, few enough that not many cells are visited twice. */
+enum { MOST_BLOCKS = 64, LEAST_BLOCK_OF_SURFACE = 256, LEAST_BLOCK_OF_SOLID = 1024 };
+
+/* How many blocks the vertices are cut into. The number depends on the mesh alone, so that every sum has one order for
+   any number of threads. Not collective. */
+PetscInt EqmNumBlocks(PetscInt cell_size, PetscInt num_vertices)
+{
+  const PetscInt least = cell_size == 3 ? LEAST_BLOCK_OF_SURFACE : LEAST_BLOCK_OF_SOLID;
+
+  return PetscMax(1, PetscMin(MOST_BLOCKS, num_vertices / least));
+}
+
+/* Equal shares of the numbering: compact on a surface, whose Cuthill-McKee fronts are lines. Not collective. */
+PetscErrorCode EqmCutBlocks(PetscInt num_vertices, PetscInt num_blocks, PetscInt *block_vertex)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b <= num_blocks; b++) {
+    block_vertex[b] = (PetscInt)((PetscInt64)num_vertices * b / num_blocks);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Blocks that METIS cuts, for solids: their fronts are surfaces, and shares of the numbering would be thin slices, each
+   cell in two of them. Vertices of a block become neighbours in `new_number` and keep their order; blocks follow each
+   other as their first vertices did. Not collective. */
+PetscErrorCode EqmOrderBlocks(const EqmGraph *graph, PetscInt num_blocks, PetscInt *new_number, PetscInt *block_vertex)
+{
+  const PetscInt n = graph->num_rows;
+  PetscInt *start, *neighbor, *part, *order, *block, count = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc5(n + 1, &start, graph->start[n], &neighbor, n, &part, n, &order, num_blocks, &block));
+  for (PetscInt i = 0; i < n; i++) {
+    start[i] = count;
+    for (PetscInt q = graph->start[i]; q < graph->start[i + 1]; q++) {
+      if (graph->neighbor[q] < n) neighbor[count++] = graph->neighbor[q];
+    }
+    order[new_number[i]] = i;
+  }
+  start[n] = count;
+  PetscCall(EqmRunMetis(num_blocks, n, start, neighbor, part));
+  for (PetscInt b = 0; b < num_blocks; b++) block[b] = -1;
+  PetscCall(PetscArrayzero(block_vertex, num_blocks + 1));
+  count = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt p = part[order[k]];
+    if (block[p] < 0) block[p] = count++;
+    block_vertex[block[p] + 1]++;
+  }
+  for (PetscInt b = 0; b < num_blocks; b++) block_vertex[b + 1] += block_vertex[b];
+  for (PetscInt k = 0; k < n; k++) new_number[order[k]] = block_vertex[block[part[order[k]]]]++;
+  for (PetscInt b = num_blocks; b > 0; b--) block_vertex[b] = block_vertex[b - 1];
+  block_vertex[0] = 0;
+  PetscCall(PetscFree5(start, neighbor, part, order, block));
+  PetscFunctionReturn(0);
+}

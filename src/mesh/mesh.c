@@ -69,19 +69,37 @@ static PetscErrorCode NumberGhosts(EqmMesh mesh, EqmSoup soup, PetscInt num_ghos
   PetscFunctionReturn(0);
 }
 
-/* Number the vertices: owned ones by reverse Cuthill-McKee, ghosts by their global numbers. Rewrites `cells`. */
+/* New numbers of the owned vertices, by reverse Cuthill-McKee, and the blocks that threads work on. */
+static PetscErrorCode OrderOwned(EqmMesh mesh, PetscInt num_cells, const PetscInt *cells, PetscInt *new_number)
+{
+  EqmGraph graph;
+
+  PetscFunctionBegin;
+  PetscCall(EqmGraphOfCells(mesh->num_owned, mesh->cell_size, num_cells, cells, &graph));
+  PetscCall(EqmOrderCuthillMcKee(&graph, new_number));
+  mesh->num_blocks = EqmNumBlocks(mesh->cell_size, mesh->num_owned);
+  PetscCall(PetscMalloc1(mesh->num_blocks + 1, &mesh->block_vertex));
+  if (mesh->cell_size == 3) {
+    PetscCall(EqmCutBlocks(mesh->num_owned, mesh->num_blocks, mesh->block_vertex));
+  } else {
+    PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_PARTITION));
+    PetscCall(EqmOrderBlocks(&graph, mesh->num_blocks, new_number, mesh->block_vertex));
+    PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_PARTITION));
+  }
+  PetscCall(EqmGraphReset(&graph));
+  PetscFunctionReturn(0);
+}
+
+/* Number the vertices: owned ones for short ways through memory, ghosts by their global numbers. Rewrites `cells`. */
 static PetscErrorCode NumberVertices(EqmMesh mesh, EqmSoup soup, PetscInt *owned, PetscInt num_ghosts, PetscInt *ghosts,
                                      PetscInt num_cells, PetscInt *cells)
 {
   PetscInt *new_number, *ghost_global, *ghost_place;
-  EqmGraph graph;
   PetscLayout layout;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(mesh->num_owned, &new_number, num_ghosts, &ghost_global, num_ghosts, &ghost_place));
-  PetscCall(EqmGraphOfCells(mesh->num_owned, mesh->cell_size, num_cells, cells, &graph));
-  PetscCall(EqmOrderCuthillMcKee(&graph, new_number));
-  PetscCall(EqmGraphReset(&graph));
+  PetscCall(OrderOwned(mesh, num_cells, cells, new_number));
   PetscCall(PetscMalloc1(mesh->num_owned, &mesh->vertex_input));
   for (PetscInt i = 0; i < mesh->num_owned; i++) mesh->vertex_input[new_number[i]] = owned[i];
   PetscCallMPI(MPI_Exscan(&mesh->num_owned, &mesh->vertex_start, 1, MPIU_INT, MPI_SUM, mesh->comm));

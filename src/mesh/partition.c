@@ -44,12 +44,17 @@ static PetscErrorCode SlabGraph(EqmSoup soup, EqmGraph *graph)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunMetis(PetscMPIInt num_parts, PetscInt n, PetscInt *start, PetscInt *neighbor, PetscInt *part)
+/* Cut a graph into parts of equal size with few edges between them. Not collective. */
+PetscErrorCode EqmRunMetis(PetscInt num_parts, PetscInt n, PetscInt *start, PetscInt *neighbor, PetscInt *part)
 {
-  idx_t num_rows = (idx_t)n, num_constraints = 1, parts = num_parts, cut;
+  idx_t num_rows = (idx_t)n, num_constraints = 1, parts = (idx_t)num_parts, cut;
   int result;
 
   PetscFunctionBegin;
+  if (num_parts == 1) { /* METIS divides by zero there */
+    PetscCall(PetscArrayzero(part, n));
+    PetscFunctionReturn(0);
+  }
   PetscCheck(sizeof(idx_t) == sizeof(PetscInt), PETSC_COMM_SELF, PETSC_ERR_SUP,
              "METIS and PETSc were built with integers of different sizes; build both with the same");
   result = METIS_PartGraphKway(&num_rows, &num_constraints, (idx_t *)start, (idx_t *)neighbor, NULL, NULL, NULL, &parts,
@@ -95,7 +100,7 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
       sum += d;
     }
     all_start[n] = sum;
-    PetscCall(RunMetis(size, n, all_start, all_neighbor, part));
+    PetscCall(EqmRunMetis(size, n, all_start, all_neighbor, part));
   }
   PetscCallMPI(
       MPI_Scatterv(part, row_count, row_start, MPIU_INT, owner_of_slab, row_count[rank], MPIU_INT, 0, soup->comm));

@@ -72,6 +72,29 @@ static PetscErrorCode CheckCells(EqmMesh mesh, EqmSoup serial)
   PetscFunctionReturn(0);
 }
 
+/* Every block lists the cells around its vertices, in ascending order and not many others. */
+static PetscErrorCode CheckBlocks(EqmMesh mesh)
+{
+  PetscFunctionBegin;
+  CHECK(mesh->block_vertex[0] == 0 && mesh->block_vertex[mesh->num_blocks] == mesh->num_owned, "blocks end at %d",
+        (int)mesh->block_vertex[mesh->num_blocks]);
+  for (PetscInt b = 0; b < mesh->num_blocks; b++) {
+    PetscInt listed = mesh->block_start[b];
+    CHECK(mesh->block_vertex[b] <= mesh->block_vertex[b + 1], "block %d", (int)b);
+    for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+      PetscBool touches = PETSC_FALSE;
+      for (int a = 0; a < 4; a++) {
+        const PetscInt v = mesh->cells[4 * c + a];
+        if (v >= mesh->block_vertex[b] && v < mesh->block_vertex[b + 1]) touches = PETSC_TRUE;
+      }
+      if (touches) CHECK(mesh->block_cell[listed++] == c, "block %d lacks cell %d", (int)b, (int)c);
+    }
+    CHECK(listed == mesh->block_start[b + 1], "block %d lists %d cells too many", (int)b,
+          (int)(mesh->block_start[b + 1] - listed));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* The mesh's own facets look outward: by the divergence theorem they enclose its volume. Each is one rank's that owns
    its vertex of lowest global number. */
 static PetscErrorCode CheckFacets(EqmMesh mesh)
@@ -156,6 +179,7 @@ static PetscErrorCode TestSolid(const char *shape, PetscInt n, const char *optio
   PetscCall(TestOptionsBegin(options_text, &options));
   PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(CheckCells(test.mesh, serial));
+  PetscCall(CheckBlocks(test.mesh));
   PetscCall(CheckFacets(test.mesh));
   PetscCall(EqmSurfaceCreate(test.mesh, &surface));
   PetscCall(CheckSurface(test.mesh, surface));
@@ -272,6 +296,7 @@ int main(int argc, char **argv)
   PetscCall(EqmInitialize(&argc, &argv));
   PetscCall(TestSolid("blob", 700, "-partition metis", None));
   PetscCall(TestSolid("blob", 700, "-partition slab", All));
+  PetscCall(TestSolid("ball", 8000, "-partition metis", None)); /* more than one block on each rank */
   PetscCall(TestSolid("cube", 1, "-partition metis", None));
   PetscCall(TestSurfaceHasNone());
   PetscCall(TestMendedSolid());
