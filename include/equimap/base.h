@@ -50,6 +50,7 @@ typedef enum {
   EQM_PHASE_DISTRIBUTE,
   EQM_PHASE_START,
   EQM_PHASE_MINIMISE,
+  EQM_PHASE_CHECKPOINT,
   EQM_PHASE_MEASURE,
   EQM_PHASE_WRITE,
   EQM_NUM_PHASES
@@ -84,6 +85,8 @@ PETSC_EXTERN PetscErrorCode EqmEventEnd(EqmLedger ledger, EqmEvent event);
 PETSC_EXTERN PetscErrorCode EqmLedgerGetWork(EqmLedger ledger, EqmWork **work);
 PETSC_EXTERN PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PHASES],
                                                 PetscReal events[EQM_NUM_EVENTS], PetscReal *total);
+PETSC_EXTERN PetscErrorCode EqmLedgerAddEarlier(EqmLedger ledger, const PetscReal phases[EQM_NUM_PHASES],
+                                                const PetscReal events[EQM_NUM_EVENTS], PetscReal total);
 PETSC_EXTERN PetscErrorCode EqmGetPeakMemory(MPI_Comm comm, PetscInt64 *max_per_rank, PetscInt64 *total);
 
 #endif

@@ -49,6 +49,9 @@ struct _p_EqmMesh {
   PetscInt *vertex_input; /* per owned vertex */
   PetscInt *cell_input;   /* per local cell */
   PetscInt soup_vertices; /* vertices of the soup, unreferenced ones included */
+
+  char file[PETSC_MAX_PATH_LEN]; /* where the soup came from */
+  PetscInt64 identity;           /* CRC-32 of the soup's vertices, cells and density: tells it from other meshes */
 };
 
 /* Build the distributed mesh of a soup: partition, renumber, exchange one ghost layer. The soup must have passed the

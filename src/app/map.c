@@ -1,11 +1,12 @@
 /* equimap disk | square | sphere MESH -o OUT: read, diagnose, distribute, minimise, measure, write. */
 #include "app.h"
+#include "base/stop.h"
 #include <omp.h>
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
-      density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary, has_history, has_density, has_histogram;
+      density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN], checkpoint[PETSC_MAX_PATH_LEN];
+  PetscBool has_output, has_summary, has_history, has_density, has_histogram, has_checkpoint;
   EqmInputOptions input;
   PetscInt hessian_eigenvalues;
 } MapOptions;
@@ -47,7 +48,9 @@ static PetscErrorCode AskOptions(MapOptions *options)
                             threads, &threads, NULL));
   PetscOptionsEnd();
   if (options->has_density) options->input.density = options->density;
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &options->input.quiet, NULL)); /* the solver lists it */
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &options->input.quiet, NULL)); /* the solver lists these */
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-checkpoint", options->checkpoint, sizeof(options->checkpoint),
+                                  &options->has_checkpoint));
   PetscFunctionReturn(0);
 }
 
@@ -71,6 +74,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOption
   if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[0], options->summary));
   if (options->has_history) PetscCall(EqmCheckOutput(line->argument[0], options->history));
   if (options->has_histogram) PetscCall(EqmCheckOutput(line->argument[0], options->histogram));
+  if (options->has_checkpoint) PetscCall(EqmCheckOutput(line->argument[0], options->checkpoint));
   PetscFunctionReturn(0);
 }
 
@@ -89,7 +93,7 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
   PetscFunctionBegin;
   PetscCall(CloseBooks(ledger, map));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
-  PetscCall(EqmMapWrite(map, options->output));
+  if (map->status != EQM_STATUS_STOPPED) PetscCall(EqmMapWrite(map, options->output)); /* there is the checkpoint */
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   if (options->has_histogram) PetscCall(EqmMapWriteHistogram(map, options->histogram));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
@@ -155,7 +159,7 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
                         (double)map->event_seconds[EQM_EVENT_FACTOR], (double)map->event_seconds[EQM_EVENT_SOLVE],
                         (double)map->event_seconds[EQM_EVENT_KERNEL]));
   PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)map->memory_total,
-                        options->output));
+                        map->status == EQM_STATUS_STOPPED ? options->checkpoint : options->output));
   PetscFunctionReturn(0);
 }
 
@@ -202,6 +206,7 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckArguments(line, &options));
+  EqmStopCatchSignals();
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   PetscCall(EqmInputRead(line->command, line->argument[0], &options.input, ledger, &input));
   PetscCall(Solve(line, &options, ledger, &input, status));

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "atomicfile.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
@@ -183,6 +184,15 @@ static int CloseStream(EqmAtomicFile *file)
   return error_number;
 }
 
+/* Give a file a second name, so that the first can be taken from it without a moment in which neither is there. */
+static int KeepPrevious(const EqmAtomicFile *file)
+{
+  if (!file->previous[0] || access(file->path, F_OK)) return 0;
+  if (unlink(file->previous) && errno != ENOENT) return errno;
+  if (!link(file->path, file->previous)) return 0;
+  return rename(file->path, file->previous) ? errno : 0; /* a file system without hard links */
+}
+
 /* EqmAtomicCommit - flush the temporary file to the disk, give it its name, flush the directory.
 
    Not collective. After a failure the temporary file is gone and a file that had the name before is untouched.
@@ -194,6 +204,7 @@ PetscErrorCode EqmAtomicCommit(EqmAtomicFile *file, char *error, size_t length)
   int error_number = file->stream ? CloseStream(file) : file->error_number;
 
   if (!error_number && !in_place) error_number = SyncPath(file->temporary, O_RDONLY);
+  if (!error_number && !in_place) error_number = KeepPrevious(file);
   if (!error_number && !in_place && rename(file->temporary, file->path)) error_number = errno;
   if (error_number) {
     EqmAtomicAbort(file);
@@ -212,4 +223,40 @@ void EqmAtomicAbort(EqmAtomicFile *file)
   file->stream = NULL;
   if (file->temporary[0] && strcmp(file->path, file->temporary)) unlink(file->temporary);
   file->temporary[0] = '\0';
+}
+
+/* Is this the name of a temporary of `base`, base.NUMBER-NUMBER.tmp? */
+static PetscBool IsTemporaryOf(const char *base, const char *name)
+{
+  const size_t length = strlen(base);
+  const char *end = name + length;
+
+  if (strncmp(name, base, length) || *end != '.') return PETSC_FALSE;
+  end += 1 + strspn(end + 1, "0123456789");
+  if (*end != '-') return PETSC_FALSE;
+  end += 1 + strspn(end + 1, "0123456789");
+  return strcmp(end, ".tmp") ? PETSC_FALSE : PETSC_TRUE;
+}
+
+/* EqmAtomicSweep - remove the temporaries of `path` that killed runs have left behind. Only for a file that no other
+   run writes at the same time. Not collective. */
+void EqmAtomicSweep(const char *path)
+{
+  char copy[PETSC_MAX_PATH_LEN], name[PETSC_MAX_PATH_LEN], leftover[2 * PETSC_MAX_PATH_LEN];
+  const char *base, *folder;
+  DIR *directory;
+
+  if (strlen(path) >= sizeof(copy)) return;
+  strcpy(copy, path);
+  strcpy(name, path);
+  base = basename(name);
+  folder = dirname(copy);
+  directory = opendir(folder);
+  if (!directory) return;
+  for (const struct dirent *entry = readdir(directory); entry; entry = readdir(directory)) {
+    if (!IsTemporaryOf(base, entry->d_name)) continue;
+    (void)snprintf(leftover, sizeof(leftover), "%s/%s", folder, entry->d_name);
+    (void)unlink(leftover);
+  }
+  (void)closedir(directory);
 }

@@ -22,6 +22,7 @@ typedef struct {
   int error_number;                   /* errno of the first write that failed, 0 while all is well */
   char path[PETSC_MAX_PATH_LEN];      /* what the file will be called; links are followed */
   char temporary[PETSC_MAX_PATH_LEN]; /* what it is called until EqmAtomicCommit; = path for devices and pipes */
+  char previous[PETSC_MAX_PATH_LEN];  /* what a file that had the name before is called from then on; empty: lost */
 } EqmAtomicFile;
 
 PETSC_INTERN PetscErrorCode EqmAtomicBegin(const char *path, EqmAtomicFile *file, char *error, size_t length);
@@ -31,5 +32,6 @@ PETSC_INTERN void EqmAtomicPrint(EqmAtomicFile *file, const char *format, ...) P
 PETSC_INTERN void EqmAtomicPrintReals(EqmAtomicFile *file, PetscInt count, const PetscReal *values, char separator);
 PETSC_INTERN PetscErrorCode EqmAtomicCommit(EqmAtomicFile *file, char *error, size_t length);
 PETSC_INTERN void EqmAtomicAbort(EqmAtomicFile *file);
+PETSC_INTERN void EqmAtomicSweep(const char *path);
 
 #endif

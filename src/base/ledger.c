@@ -11,8 +11,8 @@ struct _p_EqmLedger {
   PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS];
 };
 
-static const char *const phase_names[EQM_NUM_PHASES] = {"Read",     "Diagnose", "Distribute", "Start",
-                                                        "Minimise", "Measure",  "Write"};
+static const char *const phase_names[EQM_NUM_PHASES] = {"Read",     "Diagnose",   "Distribute", "Start",
+                                                        "Minimise", "Checkpoint", "Measure",    "Write"};
 static const char *const event_names[EQM_NUM_EVENTS] = {"EqmPartition", "EqmAssemble", "EqmFactor", "EqmSolve",
                                                         "EqmKernel"};
 
@@ -127,6 +127,18 @@ PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PH
     *total = now - ledger->created;
     PetscCallMPI(MPI_Bcast(total, 1, MPIU_REAL, 0, ledger->comm));
   }
+  PetscFunctionReturn(0);
+}
+
+/* The run is the continuation of others, which took so long. Seconds of the kinds of work go to this rank's. Not
+   collective. */
+PetscErrorCode EqmLedgerAddEarlier(EqmLedger ledger, const PetscReal phases[EQM_NUM_PHASES],
+                                   const PetscReal events[EQM_NUM_EVENTS], PetscReal total)
+{
+  PetscFunctionBegin;
+  for (int p = 0; p < EQM_NUM_PHASES; p++) ledger->phase_seconds[p] += phases[p];
+  for (int e = 0; e < EQM_NUM_EVENTS; e++) ledger->event_seconds[e] += events[e];
+  ledger->created -= total;
   PetscFunctionReturn(0);
 }
 

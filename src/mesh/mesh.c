@@ -236,6 +236,8 @@ PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *out)
   mesh->ledger = ledger;
   mesh->cell_size = soup->cell_size;
   mesh->soup_vertices = soup->num_vertices;
+  PetscCall(PetscStrncpy(mesh->file, soup->file, sizeof(mesh->file)));
+  PetscCall(EqmSoupComputeIdentity(soup, &mesh->identity));
   PetscCallMPI(MPI_Comm_rank(soup->comm, &mesh->rank));
   PetscCallMPI(MPI_Comm_size(soup->comm, &mesh->size));
   PetscCall(PetscMalloc1(soup->vertex_end - soup->vertex_start, &owner));

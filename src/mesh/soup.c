@@ -1,7 +1,7 @@
 /* The mesh of a file, dealt to the ranks in contiguous slabs of vertices and of cells. */
 #include "mesh/build.h"
+#include "base/checksum.h"
 #include <string.h>
-#include <zlib.h>
 
 enum { TAG_VERTICES = 1, TAG_CELLS = 2 };
 
@@ -11,59 +11,32 @@ static PetscInt ShareStart(PetscInt total, PetscMPIInt rank, PetscMPIInt size)
   return (PetscInt)((PetscInt64)total / size * rank + PetscMin(rank, (PetscInt64)total % size));
 }
 
-/* CRC-32 of doubles, so that it does not depend on PetscReal. */
-static uLong ChecksumReals(size_t count, const PetscReal *values)
-{
-  double part[1024];
-  uLong checksum = crc32(0, NULL, 0);
-
-  for (size_t i = 0; i < count; i += 1024) {
-    const size_t length = PetscMin(count - i, 1024);
-
-    for (size_t k = 0; k < length; ++k) part[k] = (double)values[i + k];
-    checksum = crc32(checksum, (const Bytef *)part, (uInt)(length * sizeof(double)));
-  }
-  return checksum;
-}
-
-/* CRC-32 of 64-bit integers, so that it does not depend on PetscInt. */
-static uLong ChecksumIntegers(size_t count, const PetscInt *values)
-{
-  PetscInt64 part[1024];
-  uLong checksum = crc32(0, NULL, 0);
-
-  for (size_t i = 0; i < count; i += 1024) {
-    const size_t length = PetscMin(count - i, 1024);
-
-    for (size_t k = 0; k < length; ++k) part[k] = values[i + k];
-    checksum = crc32(checksum, (const Bytef *)part, (uInt)(length * sizeof(PetscInt64)));
-  }
-  return checksum;
-}
-
-/* The checksum of all vertices, then all cells, from those of the slabs: the same for any number of ranks. Collective.
- */
+/* The checksum of all vertices, then all cells: the same for any number of ranks. Collective. */
 PetscErrorCode EqmSoupComputeChecksum(EqmSoup soup)
 {
-  const size_t num_reals = 3 * (size_t)(soup->vertex_end - soup->vertex_start);
-  const size_t num_integers = (size_t)soup->cell_size * (size_t)(soup->cell_end - soup->cell_start);
-  const PetscInt64 mine[4] = {(PetscInt64)ChecksumReals(num_reals, soup->vertices), (PetscInt64)(8 * num_reals),
-                              (PetscInt64)ChecksumIntegers(num_integers, soup->cells), (PetscInt64)(8 * num_integers)};
-  PetscInt64 *all;
-  uLong checksum = crc32(0, NULL, 0);
-  PetscMPIInt size;
+  const PetscInt64 num_reals = 3 * (PetscInt64)(soup->vertex_end - soup->vertex_start);
+  const PetscInt64 num_integers = soup->cell_size * (PetscInt64)(soup->cell_end - soup->cell_start);
+  EqmChecksum vertices, cells;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(soup->comm, &size));
-  PetscCall(PetscMalloc1(4 * size, &all));
-  PetscCallMPI(MPI_Allgather(mine, 4, MPIU_INT64, all, 4, MPIU_INT64, soup->comm));
-  for (PetscInt k = 0; k < 4; k += 2) {
-    for (PetscMPIInt r = 0; r < size; ++r) {
-      checksum = crc32_combine(checksum, (uLong)all[4 * r + k], (z_off_t)all[4 * r + k + 1]);
-    }
+  PetscCall(EqmChecksumJoin(soup->comm, EqmChecksumReals(num_reals, soup->vertices), &vertices));
+  PetscCall(EqmChecksumJoin(soup->comm, EqmChecksumIntegers(num_integers, soup->cells), &cells));
+  soup->checksum = EqmChecksumAppend(vertices, cells).crc;
+  PetscFunctionReturn(0);
+}
+
+/* Tells this mesh with this density from others: the same for any number of ranks. Collective. */
+PetscErrorCode EqmSoupComputeIdentity(EqmSoup soup, PetscInt64 *identity)
+{
+  const PetscInt num_cells = soup->cell_end - soup->cell_start;
+  EqmChecksum density, both = {soup->checksum, 0};
+
+  PetscFunctionBegin;
+  if (soup->density) {
+    PetscCall(EqmChecksumJoin(soup->comm, EqmChecksumReals(num_cells, soup->density), &density));
+    both = EqmChecksumAppend(both, density);
   }
-  soup->checksum = (PetscInt64)checksum;
-  PetscCall(PetscFree(all));
+  *identity = both.crc;
   PetscFunctionReturn(0);
 }
 

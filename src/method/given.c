@@ -23,13 +23,15 @@ PetscErrorCode EqmSolverSetLandmarks(EqmSolver solver, PetscInt num, PetscInt di
   PetscFunctionReturn(0);
 }
 
-/* The first map, given or made, and the landmarks' owners. Collective. */
+/* The first map, given or made, or the map of a checkpoint, and the landmarks' owners. Collective. */
 PetscErrorCode EqmSolverTakeGiven(EqmSolver solver)
 {
   const EqmDomain domain = solver->domain;
 
   PetscFunctionBegin;
-  if (solver->first_map) {
+  if (solver->settings.restart[0]) {
+    PetscCall(EqmCheckpointLoadMap(solver));
+  } else if (solver->first_map) {
     PetscCheck(solver->first_map_dim == domain->dim, solver->comm, PETSC_ERR_ARG_INCOMP,
                "a first map has the target's coordinates");
     PetscCall(PetscArraycpy(solver->place.x, solver->first_map, domain->dim * solver->mesh->num_owned));

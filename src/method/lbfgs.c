@@ -114,6 +114,16 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  Lbfgs *const lb = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMetricState(solver, lb->metric, state));
+  PetscCall(EqmPairsStateDofs(lb->pairs, state, solver->domain));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
 {
   EqmSettings *const set = &solver->settings;
@@ -132,5 +142,6 @@ const EqmMethod EqmMethodLbfgs = {
     .options = Options,
     .set_up = SetUp,
     .step = Step,
+    .state = State,
     .destroy = Destroy,
 };

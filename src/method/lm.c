@@ -171,6 +171,18 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* The factor and the pairs do not outlive an iteration. The objective follows the barrier's weight. */
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  EqmLm *const lm = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStateReal(state, "damping", &lm->mu));
+  PetscCall(EqmStateReal(state, "barrier_weight", &lm->kappa));
+  if (EqmStateIsLoading(state)) EqmLmWeigh(solver, &lm->now);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(EqmSolver solver)
 {
   EqmLm *const lm = solver->data;
@@ -202,6 +214,7 @@ const EqmMethod EqmMethodLm = {
     .purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration: the house's own",
     .set_up = SetUp,
     .step = Step,
+    .state = State,
     .destroy = Destroy,
     .takes_landmarks = PETSC_TRUE,
 };

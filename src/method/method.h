@@ -7,6 +7,8 @@
 #include "method/landmarks.h"
 #include "method/problem.h"
 #include "method/objective.h"
+#include "method/checkpoint.h"
+#include "method/state.h"
 
 /* What a step came to. */
 typedef enum {
@@ -21,6 +23,7 @@ struct EqmMethod {
   PetscErrorCode (*options)(EqmSolver, PetscOptionItems *); /* may be NULL */
   PetscErrorCode (*set_up)(EqmSolver);                      /* solver->place holds the start */
   PetscErrorCode (*step)(EqmSolver, EqmStep *); /* leaves place, image, step_length, gradient_norm, objective */
+  PetscErrorCode (*state)(EqmSolver, EqmState); /* what a checkpoint must hold beside the map: state.h; may be NULL */
   PetscErrorCode (*destroy)(EqmSolver);
   PetscBool takes_landmarks;
 };
@@ -32,6 +35,8 @@ typedef struct {
   PetscInt stagnation; /* iterations over which energy_rtol is looked at */
   PetscBool quiet, has_corners, center_start;
   PetscInt corners[4];
+  char checkpoint[PETSC_MAX_PATH_LEN], restart[PETSC_MAX_PATH_LEN]; /* empty: none */
+  PetscInt checkpoint_every;                                        /* iterations; 0: only at the end */
   /* ncg */
   PetscInt ncg_refresh;
   PetscEnum ncg_beta; /* an EqmNcgBeta */
@@ -79,6 +84,7 @@ struct _p_EqmSolver {
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
   char linear_solver[EQM_LINEAR_TEXT]; /* what solves with the method's matrices */
+  EqmCheckpoints checkpoints;
 };
 
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,
@@ -93,6 +99,7 @@ PETSC_INTERN PetscErrorCode EqmSolverSum(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverTakeGiven(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverLandmarksReached(EqmSolver solver, PetscBool *reached);
 PETSC_INTERN PetscErrorCode EqmMonitorBegin(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmMonitorReserve(EqmSolver solver, PetscInt rows);
 PETSC_INTERN PetscErrorCode EqmMonitorRow(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorEnd(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorUnfolded(EqmSolver solver, const char *when);
@@ -127,6 +134,8 @@ PETSC_INTERN PetscErrorCode EqmMetricDestroy(EqmMetric *metric);
 PETSC_INTERN PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric);
 /* h = M^-1 g; both in degrees of freedom at the present map; may be the same. Collective. */
 PETSC_INTERN PetscErrorCode EqmMetricApply(EqmSolver solver, EqmMetric metric, Vec g, Vec h);
+/* For the `state` of a method that keeps a metric over several steps. Collective. */
+PETSC_INTERN PetscErrorCode EqmMetricState(EqmSolver solver, EqmMetric metric, EqmState state);
 
 /* ---- first maps (src/start/start.c) */
 /* Fail with EQM_ERR_USAGE if the problem has no start of this name. Collective. */

@@ -7,6 +7,7 @@
 struct _p_EqmMetric {
   PetscReal *weights, *mass, *columns, *ambient;
   signed char *group;
+  EqmPlace at; /* the map that the present factor belongs to */
 };
 
 PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
@@ -23,6 +24,7 @@ PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     metric->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
   }
+  PetscCall(EqmPlaceCreate(solver->domain, &metric->at));
   *out = metric;
   PetscFunctionReturn(0);
 }
@@ -31,18 +33,41 @@ PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
 {
   PetscFunctionBegin;
   if (!*metric) PetscFunctionReturn(0);
+  PetscCall(EqmPlaceDestroy(&(*metric)->at));
   PetscCall(PetscFree5((*metric)->weights, (*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
   PetscCall(PetscFree(*metric));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric)
+/* Factor what belongs to the present map. */
+static PetscErrorCode Factor(EqmSolver solver, EqmMetric metric)
 {
   PetscBool with_mass;
 
   PetscFunctionBegin;
   PetscCall(solver->problem->objective->metric(solver, metric->weights, metric->mass, &with_mass));
   PetscCall(EqmGroupFactor(solver, metric->weights, metric->group, with_mass ? metric->mass : NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &metric->at));
+  PetscCall(Factor(solver, metric));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricState(EqmSolver solver, EqmMetric metric, EqmState state)
+{
+  const EqmPlace present = solver->place;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStatePlace(state, solver->domain, "metric_of", &metric->at));
+  if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
+  solver->place = metric->at; /* for as long as it takes to factor again what was factored there */
+  PetscCall(Factor(solver, metric));
+  solver->place = present;
   PetscFunctionReturn(0);
 }
 

@@ -43,6 +43,17 @@ static PetscErrorCode PrintRow(EqmSolver solver, const EqmHistoryRow *row, Petsc
   PetscFunctionReturn(0);
 }
 
+/* Room for so many rows of the history. Not collective. */
+PetscErrorCode EqmMonitorReserve(EqmSolver solver, PetscInt rows)
+{
+  PetscFunctionBegin;
+  if (rows <= solver->most_history) PetscFunctionReturn(0);
+  solver->most_history = PetscMax(PetscMax(64, 2 * solver->most_history), rows);
+  PetscCall(PetscRealloc(sizeof(EqmHistoryRow) * (size_t)solver->most_history, &solver->history));
+  PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)solver->most_history, &solver->objectives));
+  PetscFunctionReturn(0);
+}
+
 /* Add a row to the history and show it. Collective. */
 PetscErrorCode EqmMonitorRow(EqmSolver solver)
 {
@@ -50,11 +61,7 @@ PetscErrorCode EqmMonitorRow(EqmSolver solver)
   EqmHistoryRow *row;
 
   PetscFunctionBegin;
-  if (solver->num_history == solver->most_history) {
-    solver->most_history = PetscMax(64, 2 * solver->most_history);
-    PetscCall(PetscRealloc(sizeof(EqmHistoryRow) * (size_t)solver->most_history, &solver->history));
-    PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)solver->most_history, &solver->objectives));
-  }
+  PetscCall(EqmMonitorReserve(solver, solver->num_history + 1));
   PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
   solver->objectives[solver->num_history] = solver->objective;
   row = &solver->history[solver->num_history++];

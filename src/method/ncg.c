@@ -192,6 +192,19 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   PetscFunctionReturn(0);
 }
 
+/* SetUp makes gradient and preconditioned gradient anew, the latter with the factor of another map. */
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  Ncg *const ncg = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMetricState(solver, ncg->metric, state));
+  PetscCall(EqmStateReal(state, "alpha", &ncg->alpha));
+  PetscCall(EqmStateDofs(state, solver->domain, "direction", ncg->direction));
+  PetscCall(EqmStateDofs(state, solver->domain, "preconditioned", ncg->preconditioned));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
 {
   PetscFunctionBegin;
@@ -212,5 +225,6 @@ const EqmMethod EqmMethodNcg = {
     .options = Options,
     .set_up = SetUp,
     .step = Step,
+    .state = State,
     .destroy = Destroy,
 };

@@ -85,3 +85,46 @@ PetscErrorCode EqmPairsDirection(EqmPairs pairs, EqmApplyInverse apply, void *co
   PetscCall(PetscFree(alpha));
   PetscFunctionReturn(0);
 }
+
+/* The pairs from the oldest to the newest; where in the ring they stand has no influence on anything. */
+PetscErrorCode EqmPairsState(EqmPairs pairs, EqmState state, EqmStateVec visit, void *context)
+{
+  PetscInt count = pairs->count;
+  PetscReal *curvature;
+  char name[64];
+
+  PetscFunctionBegin;
+  PetscCall(EqmStateSameInt(state, "the number of remembered steps", pairs->most));
+  PetscCall(EqmStateInt(state, "num_pairs", &count));
+  PetscCall(PetscMalloc1(pairs->most, &curvature));
+  if (EqmStateIsLoading(state)) {
+    pairs->oldest = 0;
+    pairs->count = PetscMin(count, pairs->most);
+  }
+  for (PetscInt k = 0; k < pairs->count; k++) curvature[k] = pairs->curvature[(pairs->oldest + k) % pairs->most];
+  PetscCall(EqmStateReals(state, "pairs/curvature", pairs->count, curvature));
+  for (PetscInt k = 0; k < pairs->count; k++) {
+    const PetscInt place = (pairs->oldest + k) % pairs->most;
+    pairs->curvature[place] = curvature[k];
+    PetscCall(PetscSNPrintf(name, sizeof(name), "pairs/step%" PetscInt_FMT, k));
+    PetscCall(visit(state, context, name, pairs->step[place]));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "pairs/change%" PetscInt_FMT, k));
+    PetscCall(visit(state, context, name, pairs->change[place]));
+  }
+  PetscCall(PetscFree(curvature));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode VisitDofs(EqmState state, void *domain, const char *name, Vec v)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmStateDofs(state, domain, name, v));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmPairsStateDofs(EqmPairs pairs, EqmState state, EqmDomain domain)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmPairsState(pairs, state, VisitDofs, domain));
+  PetscFunctionReturn(0);
+}

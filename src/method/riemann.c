@@ -8,7 +8,7 @@ typedef struct {
   EqmRiemann riemann;
   EqmLoopMetric metric;
   EqmPairs pairs;
-  EqmPlace trial;
+  EqmPlace trial, metric_of; /* the latter: the map that the metric belongs to */
   Vec gradient, trial_gradient, direction;
 } Riemann;
 
@@ -22,6 +22,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
   solver->data = data;
   PetscCall(EqmRiemannCreate(solver, &data->riemann));
   PetscCall(EqmPlaceCreate(solver->domain, &data->trial));
+  PetscCall(EqmPlaceCreate(solver->domain, &data->metric_of));
   PetscCall(EqmRiemannCreateVec(solver, data->riemann, &data->gradient));
   PetscCall(VecDuplicate(data->gradient, &data->trial_gradient));
   PetscCall(VecDuplicate(data->gradient, &data->direction));
@@ -29,9 +30,45 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(EqmRiemannCentre(solver, data->riemann, &solver->place));
   PetscCall(EqmLoopMetricCreate(solver->mesh, data->riemann->num_boundary, data->riemann->boundary, solver->place.x,
                                 &data->metric));
+  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &data->metric_of));
   PetscCall(EqmRiemannEnergy(solver, data->riemann, &solver->place, &solver->objective, data->gradient));
   PetscCall(VecNorm(data->gradient, NORM_2, &solver->gradient_norm));
   PetscCall(EqmSolverLook(solver));
+  PetscFunctionReturn(0);
+}
+
+/* Boundary angles, as one number per vertex of the mesh. */
+static PetscErrorCode VisitAngles(EqmState state, void *context, const char *name, Vec angles)
+{
+  const EqmSolver solver = context;
+  const EqmRiemann riemann = ((Riemann *)solver->data)->riemann;
+  PetscReal *local;
+  PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(solver->mesh->num_local, &local));
+  PetscCall(VecGetArray(angles, &values));
+  for (PetscInt b = 0; b < riemann->num_boundary; b++) local[riemann->boundary[b]] = values[b];
+  PetscCall(EqmStateVertices(state, name, 1, local));
+  for (PetscInt b = 0; b < riemann->num_boundary; b++) values[b] = local[riemann->boundary[b]];
+  PetscCall(VecRestoreArray(angles, &values));
+  PetscCall(PetscFree(local));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  Riemann *const data = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStatePlace(state, solver->domain, "metric_of", &data->metric_of));
+  if (EqmStateIsLoading(state)) {
+    PetscCall(EqmLoopMetricDestroy(&data->metric));
+    PetscCall(EqmLoopMetricCreate(solver->mesh, data->riemann->num_boundary, data->riemann->boundary, data->metric_of.x,
+                                  &data->metric));
+  }
+  PetscCall(VisitAngles(state, solver, "gradient", data->gradient));
+  PetscCall(EqmPairsState(data->pairs, state, VisitAngles, solver));
   PetscFunctionReturn(0);
 }
 
@@ -40,6 +77,7 @@ static PetscErrorCode Destroy(EqmSolver solver)
   Riemann *const data = solver->data;
 
   PetscFunctionBegin;
+  PetscCall(EqmPlaceDestroy(&data->metric_of));
   PetscCall(EqmRiemannDestroy(&data->riemann));
   PetscCall(EqmLoopMetricDestroy(&data->metric));
   PetscCall(EqmPairsDestroy(&data->pairs));
@@ -114,5 +152,6 @@ const EqmMethod EqmMethodRiemann = {
     .purpose = "Riemann map by the boundary's angles, the interior harmonic: one factorisation",
     .set_up = SetUp,
     .step = Step,
+    .state = State,
     .destroy = Destroy,
 };

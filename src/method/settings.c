@@ -13,6 +13,7 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
                             .gradient_tol = -1.,
                             .balance = -1.,
                             .stagnation = 5,
+                            .checkpoint_every = -1,
                             .ncg_guard = PETSC_TRUE,
                             .lbfgs_refresh = 25,
                             .lbfgs_memory = 10,
@@ -30,8 +31,34 @@ static PetscErrorCode Check(MPI_Comm comm, const EqmSettings *set)
   if (set->max_it < -1) EqmFail(comm, EQM_ERR_USAGE, "-max_it %" PetscInt_FMT ": give 0 or more", set->max_it);
   if (set->wall_time < 0.)
     EqmFail(comm, EQM_ERR_USAGE, "-wall_time %g: give a number of seconds, 0 for no limit", (double)set->wall_time);
+  if (set->checkpoint_every < -1)
+    EqmFail(comm, EQM_ERR_USAGE, "-checkpoint_every %" PetscInt_FMT ": give 1 or more, 0 or -1", set->checkpoint_every);
   if (set->balance < 0. && set->balance != -1.)
     EqmFail(comm, EQM_ERR_USAGE, "-balance %g: give 0 or more; .001 to .1 are useful", (double)set->balance);
+  PetscFunctionReturn(0);
+}
+
+/* Those of long runs. */
+static PetscErrorCode AskCheckpoints(EqmSettings *set, PetscOptionItems *PetscOptionsObject)
+{
+  PetscFunctionBegin;
+  PetscCall(
+      PetscOptionsReal("-wall_time",
+                       "stop after so many seconds since the program's start: with -checkpoint before the time is "
+                       "over and to be continued, else with the map so far (0: no limit)",
+                       "EqmSolverSetFromOptions", set->wall_time, &set->wall_time, NULL));
+  PetscCall(
+      PetscOptionsString("-checkpoint",
+                         "keep the state of the run in this file (HDF5; the one before is FILE.previous): now and "
+                         "then, and before stopping at -wall_time, on the signals USR1 and TERM, or when a file "
+                         "STOP appears beside it",
+                         "EqmSolverSetFromOptions", set->checkpoint, set->checkpoint, sizeof(set->checkpoint), NULL));
+  PetscCall(PetscOptionsInt("-checkpoint_every",
+                            "write the checkpoint every so many iterations (-1: as often as takes 3 % of the time, 0: "
+                            "only when the run stops)",
+                            "EqmSolverSetFromOptions", set->checkpoint_every, &set->checkpoint_every, NULL));
+  PetscCall(PetscOptionsString("-restart", "go on from this checkpoint, or from the one before it if it is damaged",
+                               "EqmSolverSetFromOptions", set->restart, set->restart, sizeof(set->restart), NULL));
   PetscFunctionReturn(0);
 }
 
@@ -71,14 +98,12 @@ static PetscErrorCode Ask(EqmSolver solver, PetscOptionItems *PetscOptionsObject
       PetscOptionsReal("-gradient_tol",
                        "converged when the gradient's norm is no larger than this (-1: the method's own, 0: never)",
                        "EqmSolverSetFromOptions", set->gradient_tol, &set->gradient_tol, NULL));
-  PetscCall(PetscOptionsReal("-wall_time",
-                             "stop after so many seconds since the program's start, map written (0: no limit)",
-                             "EqmSolverSetFromOptions", set->wall_time, &set->wall_time, NULL));
   PetscCall(PetscOptionsReal("-balance",
                              "weight of the angle energy beside the area energy; .01 gives one nearly unique, smoother "
                              "map (-1: the method's own, 0: none)",
                              "EqmSolverSetFromOptions", set->balance, &set->balance, NULL));
   PetscCall(EqmLinearAskOptions(PetscOptionsObject));
+  PetscCall(AskCheckpoints(set, PetscOptionsObject));
   PetscCall(PetscOptionsBool("-quiet", "no progress", "EqmSolverSetFromOptions", set->quiet, &set->quiet, NULL));
   PetscCall(EqmProblemAskOptions(solver, PetscOptionsObject));
   PetscFunctionReturn(0);

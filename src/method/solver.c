@@ -64,6 +64,7 @@ static PetscErrorCode Begin(EqmSolver solver)
   PetscCall(EqmOrderingCreate(mesh, &solver->ordering));
   PetscCall(EqmPlaceCreate(solver->domain, &solver->place));
   PetscCall(PetscMalloc1(mesh->num_local_cells, &solver->image));
+  PetscCall(EqmCheckpointBegin(solver));
   PetscCall(EqmSolverTakeGiven(solver));
   PetscCall(EqmSolverLook(solver));
   PetscCall(EqmPhaseEnd(mesh->ledger, EQM_PHASE_START));
@@ -99,14 +100,12 @@ static PetscErrorCode DoubtStandstill(EqmSolver solver)
 static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
 {
   const EqmSettings *const set = &solver->settings;
-  PetscReal seconds;
   PetscBool reached;
   EqmWork *work;
 
   PetscFunctionBegin;
   PetscCall(EqmSolverLandmarksReached(solver, &reached));
   PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
-  PetscCall(EqmLedgerGetSeconds(solver->mesh->ledger, NULL, NULL, &seconds));
   *stop = PETSC_TRUE;
   solver->status = EQM_STATUS_CONVERGED;
   if (reached && set->energy_target > 0. && solver->totals.energy <= set->energy_target) {
@@ -133,13 +132,44 @@ static PetscErrorCode ShouldStop(EqmSolver solver, PetscBool *stop)
     } else if (set->max_factorizations > 0 && work->coupled_factorizations >= set->max_factorizations) {
       PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
                               "stopped after -max_factorizations %" PetscInt_FMT, set->max_factorizations));
-    } else if (set->wall_time > 0. && seconds >= set->wall_time) {
-      PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %g s",
-                              (double)set->wall_time));
     } else {
-      *stop = PETSC_FALSE;
+      PetscCall(EqmCheckpointAskedToStop(solver, stop));
     }
   }
+  PetscFunctionReturn(0);
+}
+
+/* The method has no further step. It may have said why. */
+static PetscErrorCode Finish(EqmSolver solver, EqmStep outcome)
+{
+  PetscFunctionBegin;
+  solver->checkpoints.finished = PETSC_TRUE;
+  if (outcome == EQM_STEP_CONVERGED) {
+    solver->status = EQM_STATUS_CONVERGED;
+    if (!solver->message[0])
+      PetscCall(PetscStrncpy(solver->message, "the next step would change the objective by rounding only",
+                             sizeof(solver->message)));
+    PetscCall(DoubtStandstill(solver));
+  } else {
+    solver->status = EQM_STATUS_NOT_CONVERGED;
+    if (!solver->message[0])
+      PetscCall(PetscStrncpy(solver->message,
+                             "no step decreases the objective any more: the limit of this method and this arithmetic",
+                             sizeof(solver->message)));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The method is ready for its first step, or for the next one of a run that was interrupted. */
+static PetscErrorCode SetUp(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(solver->method->set_up(solver));
+  PetscCall(EqmMonitorBegin(solver));
+  if (solver->checkpoints.open)
+    PetscCall(EqmCheckpointLoadMethod(solver));
+  else
+    PetscCall(EqmMonitorRow(solver));
   PetscFunctionReturn(0);
 }
 
@@ -148,27 +178,14 @@ static PetscErrorCode Iterate(EqmSolver solver)
   PetscBool stop = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(solver->method->set_up(solver));
-  PetscCall(EqmMonitorBegin(solver));
-  PetscCall(EqmMonitorRow(solver));
-  PetscCall(ShouldStop(solver, &stop));
-  while (!stop) {
+  PetscCall(SetUp(solver));
+  if (!solver->checkpoints.finished) PetscCall(ShouldStop(solver, &stop));
+  while (!stop && !solver->checkpoints.finished) {
     EqmStep outcome;
+    PetscCall(EqmCheckpointIfDue(solver));
     PetscCall(solver->method->step(solver, &outcome));
-    if (outcome == EQM_STEP_CONVERGED) {
-      solver->status = EQM_STATUS_CONVERGED;
-      if (!solver->message[0])
-        PetscCall(PetscStrncpy(solver->message, "the next step would change the objective by rounding only",
-                               sizeof(solver->message)));
-      PetscCall(DoubtStandstill(solver));
-      break;
-    }
-    if (outcome == EQM_STEP_STALLED) {
-      solver->status = EQM_STATUS_NOT_CONVERGED;
-      if (!solver->message[0])
-        PetscCall(PetscStrncpy(solver->message,
-                               "no step decreases the objective any more: the limit of this method and this arithmetic",
-                               sizeof(solver->message)));
+    if (outcome != EQM_STEP_TAKEN) {
+      PetscCall(Finish(solver, outcome));
       break;
     }
     solver->iteration++;
@@ -177,18 +194,15 @@ static PetscErrorCode Iterate(EqmSolver solver)
     PetscCall(EqmMonitorRow(solver));
     PetscCall(ShouldStop(solver, &stop));
   }
+  PetscCall(EqmCheckpointEnd(solver));
   PetscCall(solver->method->destroy(solver));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSolverSolve(EqmSolver solver)
+/* The problem's last touch, and folds mended if that can be done; a map with folds is no success. */
+static PetscErrorCode End(EqmSolver solver)
 {
   PetscFunctionBegin;
-  PetscCall(Begin(solver));
-  if (solver->unfolded_from > 0) PetscCall(EqmMonitorUnfolded(solver, "at the start"));
-  PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
-  PetscCall(Iterate(solver));
-  PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   if (solver->problem->finish) PetscCall(solver->problem->finish(solver));
   if (solver->problem->unfold && solver->totals.folds > 0) {
     PetscCall(solver->problem->unfold(solver, &solver->unfolded_from, &solver->unfolded_to));
@@ -201,6 +215,18 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
                             "%" PetscInt64_FMT " %s of the map are folded over; try the default method and its start",
                             solver->totals.folds, solver->mesh->cell_size == 4 ? "tetrahedra" : "triangles"));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverSolve(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(Begin(solver));
+  if (solver->unfolded_from > 0 && !solver->checkpoints.open) PetscCall(EqmMonitorUnfolded(solver, "at the start"));
+  PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  PetscCall(Iterate(solver));
+  PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  if (solver->status != EQM_STATUS_STOPPED) PetscCall(End(solver));
   PetscCall(EqmMonitorEnd(solver));
   PetscFunctionReturn(0);
 }

@@ -15,6 +15,7 @@ struct _p_EqmH5 {
   PetscBool writing;             /* a new file, under its temporary name until it is committed */
   char name[PETSC_MAX_PATH_LEN]; /* the name that the user gave */
   EqmAtomicFile atomic;          /* where a new file grows; rank 0 keeps it, all know its temporary name */
+  int cushion;                   /* rank 0: descriptor of disk space kept free for an orderly retreat; -1: none */
   H5E_auto2_t printer;           /* HDF5's own error printing, silenced while the file is open */
   void *printer_data;
 };
@@ -29,6 +30,7 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode EqmH5Create(MPI_Comm comm, const char *name, EqmH5 *h5);
 PETSC_INTERN PetscErrorCode EqmH5Open(MPI_Comm comm, const char *name, EqmH5 *h5);
+PETSC_INTERN PetscErrorCode EqmH5KeepPrevious(EqmH5 h5, const char *previous);
 PETSC_INTERN PetscErrorCode EqmH5Commit(EqmH5 *h5);
 PETSC_INTERN PetscErrorCode EqmH5Close(EqmH5 *h5);
 
@@ -40,6 +42,9 @@ PETSC_INTERN PetscErrorCode EqmH5WriteIntegers(EqmH5 h5, const char *path, EqmSl
 PETSC_INTERN PetscErrorCode EqmH5PutReal(EqmH5 h5, const char *name, PetscReal value);
 PETSC_INTERN PetscErrorCode EqmH5PutInteger(EqmH5 h5, const char *name, PetscInt64 value);
 PETSC_INTERN PetscErrorCode EqmH5PutText(EqmH5 h5, const char *name, const char *text);
+PETSC_INTERN PetscErrorCode EqmH5PutProvenance(EqmH5 h5, const char *mesh_file, PetscInt ranks);
+PETSC_INTERN PetscErrorCode EqmH5PutChecksum(EqmH5 h5, const char *path, PetscInt64 checksum);
+PETSC_INTERN PetscErrorCode EqmH5GetChecksum(EqmH5 h5, const char *path, PetscInt64 *checksum);
 
 PETSC_INTERN PetscErrorCode EqmH5HasDataset(EqmH5 h5, const char *path, PetscBool *has);
 PETSC_INTERN PetscErrorCode EqmH5GetShape(EqmH5 h5, const char *path, PetscInt64 *total, PetscInt64 *width);

@@ -1,9 +1,5 @@
-/* Arrays and attributes of HDF5 files: declared, then written or read in slabs, all collectively. */
+/* Arrays of HDF5 files: declared, then written or read in slabs, all collectively. */
 #include "h5.h"
-#include <string.h>
-
-/* Longest text of an attribute: HDF5 keeps attributes of up to 64 KiB in the object header. */
-#define LONGEST_TEXT 60000
 
 /* Groups on the way are made as needed; no fill values, for every entry will be written. */
 static PetscErrorCode Declare(EqmH5 h5, const char *path, hid_t type, PetscInt total, PetscInt width)
@@ -129,82 +125,6 @@ PetscErrorCode EqmH5ReadIntegers(EqmH5 h5, const char *path, EqmSlab slab, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Write a root attribute of one element, or replace it. */
-static PetscErrorCode Put(EqmH5 h5, const char *name, hid_t file_type, hid_t memory_type, const void *value)
-{
-  hid_t space, attribute = H5I_INVALID_HID;
-  PetscBool fine = PETSC_FALSE;
-  htri_t there;
-
-  PetscFunctionBegin;
-  space = H5Screate(H5S_SCALAR);
-  there = H5Aexists(h5->file, name);
-  if (there > 0) {
-    attribute = H5Aopen(h5->file, name, H5P_DEFAULT);
-  } else if (there == 0 && space >= 0) {
-    attribute = H5Acreate2(h5->file, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT);
-  }
-  if (attribute >= 0) {
-    fine = (PetscBool)(H5Awrite(attribute, memory_type, value) >= 0);
-    if (H5Aclose(attribute) < 0) fine = PETSC_FALSE;
-  }
-  if (space >= 0) (void)H5Sclose(space);
-  PetscCall(EqmH5Agree(h5, fine, name));
-  PetscFunctionReturn(0);
-}
-
-/* Write a root attribute, float64, with rank 0's value. Errors: EQM_ERR_IO. Collective. */
-PetscErrorCode EqmH5PutReal(EqmH5 h5, const char *name, PetscReal value)
-{
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Bcast(&value, 1, MPIU_REAL, 0, h5->comm)); /* HDF5 wants the same bytes from every rank */
-  PetscCall(Put(h5, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value));
-  PetscFunctionReturn(0);
-}
-
-/* Write a root attribute, int64, with rank 0's value. Errors: EQM_ERR_IO. Collective. */
-PetscErrorCode EqmH5PutInteger(EqmH5 h5, const char *name, PetscInt64 value)
-{
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Bcast(&value, 1, MPIU_INT64, 0, h5->comm));
-  PetscCall(Put(h5, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value));
-  PetscFunctionReturn(0);
-}
-
-static hid_t TextType(size_t length)
-{
-  const hid_t type = H5Tcopy(H5T_C_S1);
-
-  if (type >= 0 && (H5Tset_size(type, length) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0)) {
-    (void)H5Tclose(type);
-    return H5I_INVALID_HID;
-  }
-  return type;
-}
-
-/* Write a root attribute, UTF-8 text of fixed length, with rank 0's text, cut at 60,000 bytes. Errors: EQM_ERR_IO.
-   Collective. */
-PetscErrorCode EqmH5PutText(EqmH5 h5, const char *name, const char *text)
-{
-  PetscMPIInt length = (PetscMPIInt)PetscMin(strlen(text), LONGEST_TEXT) + 1;
-  char *copy;
-  hid_t type;
-  PetscErrorCode error;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Bcast(&length, 1, MPI_INT, 0, h5->comm));
-  PetscCall(PetscCalloc1((size_t)length, &copy));
-  if (h5->rank == 0) memcpy(copy, text, (size_t)length - 1);
-  PetscCallMPI(MPI_Bcast(copy, length, MPI_CHAR, 0, h5->comm));
-  type = TextType((size_t)length);
-  error = EqmH5Agree(h5, (PetscBool)(type >= 0), name);
-  if (!error) error = Put(h5, name, type, type, copy);
-  if (type >= 0) (void)H5Tclose(type);
-  PetscCall(PetscFree(copy));
-  PetscCall(error);
-  PetscFunctionReturn(0);
-}
-
 /* Whether there is an array of that name. Collective. */
 PetscErrorCode EqmH5HasDataset(EqmH5 h5, const char *path, PetscBool *has)
 {
@@ -239,58 +159,5 @@ PetscErrorCode EqmH5GetShape(EqmH5 h5, const char *path, PetscInt64 *total, Pets
   PetscCall(EqmH5Agree(h5, (PetscBool)(rank > 0), path));
   *total = (PetscInt64)shape[0];
   *width = (PetscInt64)(rank == 2 ? shape[1] : 0);
-  PetscFunctionReturn(0);
-}
-
-/* A root attribute's value; left alone where the file has none of that name and kind. */
-static void Get(EqmH5 h5, const char *name, hid_t type, void *value)
-{
-  hid_t attribute;
-
-  if (H5Aexists(h5->file, name) <= 0) return;
-  attribute = H5Aopen(h5->file, name, H5P_DEFAULT);
-  if (attribute < 0) return;
-  (void)H5Aread(attribute, type, value);
-  (void)H5Aclose(attribute);
-}
-
-/* Read a root attribute as a real; `fallback` where there is none. Collective. */
-PetscErrorCode EqmH5GetReal(EqmH5 h5, const char *name, PetscReal fallback, PetscReal *value)
-{
-  PetscFunctionBegin;
-  *value = fallback;
-  Get(h5, name, H5T_NATIVE_DOUBLE, value);
-  PetscFunctionReturn(0);
-}
-
-/* Read a root attribute as an integer; `fallback` where there is none. Collective. */
-PetscErrorCode EqmH5GetInteger(EqmH5 h5, const char *name, PetscInt64 fallback, PetscInt64 *value)
-{
-  PetscFunctionBegin;
-  *value = fallback;
-  Get(h5, name, H5T_NATIVE_INT64, value);
-  PetscFunctionReturn(0);
-}
-
-/* Read a root attribute of fixed-length text; `fallback` where there is none. Collective. */
-PetscErrorCode EqmH5GetText(EqmH5 h5, const char *name, const char *fallback, char *text, size_t length)
-{
-  hid_t attribute, type;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrncpy(text, fallback, length));
-  if (H5Aexists(h5->file, name) <= 0) PetscFunctionReturn(0);
-  attribute = H5Aopen(h5->file, name, H5P_DEFAULT);
-  if (attribute < 0) PetscFunctionReturn(0);
-  type = H5Aget_type(attribute);
-  if (type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
-    const size_t size = H5Tget_size(type);
-    char *buffer;
-    PetscCall(PetscCalloc1(size + 1, &buffer));
-    if (H5Aread(attribute, type, buffer) >= 0) PetscCall(PetscStrncpy(text, buffer, length));
-    PetscCall(PetscFree(buffer));
-  }
-  if (type >= 0) (void)H5Tclose(type);
-  (void)H5Aclose(attribute);
   PetscFunctionReturn(0);
 }

@@ -4,8 +4,9 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
+
+enum { CUSHION = 1 << 17 }; /* bytes */
 
 typedef struct {
   char *text;
@@ -47,6 +48,7 @@ static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, 
   PetscCall(PetscNew(&h5));
   h5->comm = comm;
   h5->file = h5->transfer = H5I_INVALID_HID;
+  h5->cushion = -1;
   h5->writing = writing;
   PetscCallMPI(MPI_Comm_rank(comm, &h5->rank));
   PetscCall(PetscStrncpy(h5->name, name, sizeof(h5->name)));
@@ -56,6 +58,12 @@ static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, 
   PetscFunctionReturn(0);
 }
 
+static void DropCushion(EqmH5 h5)
+{
+  if (h5->cushion >= 0) (void)close(h5->cushion);
+  h5->cushion = -1;
+}
+
 /* Close the handles of a file, whatever state it is in; a file that was not committed leaves nothing behind. */
 static PetscBool End(EqmH5 *handle)
 {
@@ -63,6 +71,7 @@ static PetscBool End(EqmH5 *handle)
   PetscBool fine = PETSC_TRUE;
 
   if (!h5) return PETSC_TRUE;
+  DropCushion(h5);
   if (h5->transfer >= 0 && H5Pclose(h5->transfer) < 0) fine = PETSC_FALSE;
   if (h5->file >= 0 && H5Fclose(h5->file) < 0) fine = PETSC_FALSE;
   if (h5->writing && h5->rank == 0) EqmAtomicAbort(&h5->atomic);
@@ -71,33 +80,66 @@ static PetscBool End(EqmH5 *handle)
   return fine;
 }
 
-static hid_t ParallelAccess(MPI_Comm comm)
+/* New files have the headers of HDF5 1.8, which carry checksums. */
+static hid_t ParallelAccess(MPI_Comm comm, PetscBool writing)
 {
   hid_t access = H5Pcreate(H5P_FILE_ACCESS);
 
   if (access >= 0 &&
-      (H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL) < 0 || H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) < 0)) {
+      (H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL) < 0 || H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) < 0 ||
+       (writing && H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) < 0))) {
     (void)H5Pclose(access);
     return H5I_INVALID_HID;
   }
   return access;
 }
 
+/* All attributes in the object header, however many: that is what all ranks can change together without tables. */
+static hid_t Creation(void)
+{
+  hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+
+  if (creation >= 0 && H5Pset_attr_phase_change(creation, 1000, 0) < 0) {
+    (void)H5Pclose(creation);
+    return H5I_INVALID_HID;
+  }
+  return creation;
+}
+
 static PetscErrorCode OpenHandles(EqmH5 h5)
 {
-  hid_t access;
+  hid_t access, creation;
   PetscBool fine;
 
   PetscFunctionBegin;
-  access = ParallelAccess(h5->comm);
-  PetscCall(EqmH5Agree(h5, (PetscBool)(access >= 0), "there is no parallel access"));
-  h5->file = h5->writing ? H5Fcreate(h5->atomic.temporary, H5F_ACC_TRUNC, H5P_DEFAULT, access)
+  access = ParallelAccess(h5->comm, h5->writing);
+  creation = Creation();
+  PetscCall(EqmH5Agree(h5, (PetscBool)(access >= 0 && creation >= 0), "there is no parallel access"));
+  h5->file = h5->writing ? H5Fcreate(h5->atomic.temporary, H5F_ACC_TRUNC, creation, access)
                          : H5Fopen(h5->name, H5F_ACC_RDONLY, access);
   (void)H5Pclose(access);
+  (void)H5Pclose(creation);
   h5->transfer = H5Pcreate(H5P_DATASET_XFER);
   fine = (PetscBool)(h5->file >= 0 && h5->transfer >= 0 && H5Pset_dxpl_mpio(h5->transfer, H5FD_MPIO_COLLECTIVE) >= 0);
   PetscCall(EqmH5Agree(h5, fine, h5->writing ? "it cannot be made" : "it is not an HDF5 file, or a damaged one"));
   PetscFunctionReturn(0);
+}
+
+/* HDF5 cannot give a file up: it writes headers even while it closes a file for which there is no room, and crashes
+   later if that fails. So the room for headers is taken first, in a file without a name, and given back when the room
+   for the rest has been taken, or has not been found. 0 or the error number. */
+static int TakeCushion(EqmH5 h5)
+{
+  char message[EQM_MESSAGE_MAX];
+  EqmAtomicFile nameless;
+  int failed;
+
+  if (EqmAtomicBegin(h5->name, &nameless, message, sizeof(message))) return 0; /* the temporary itself was possible */
+  h5->cushion = open(nameless.temporary, O_WRONLY | O_CLOEXEC);
+  EqmAtomicAbort(&nameless);
+  if (h5->cushion < 0) return 0;
+  failed = posix_fallocate(h5->cushion, 0, CUSHION);
+  return failed == EINVAL || failed == EOPNOTSUPP ? 0 : failed;
 }
 
 /* Rank 0 makes the temporary with plain system calls: their errors are clearer than those that come through MPI. */
@@ -105,6 +147,7 @@ static PetscErrorCode MakeTemporary(EqmH5 h5)
 {
   char message[EQM_MESSAGE_MAX] = "";
   PetscErrorCode error = 0;
+  int failed;
 
   PetscFunctionBegin;
   if (h5->rank == 0) {
@@ -112,6 +155,11 @@ static PetscErrorCode MakeTemporary(EqmH5 h5)
     if (!error && !strcmp(h5->atomic.path, h5->atomic.temporary)) {
       error = EQM_ERR_IO;
       (void)snprintf(message, sizeof(message), "cannot write '%.1000s': an HDF5 file must be a regular file", h5->name);
+    }
+    failed = error ? 0 : TakeCushion(h5);
+    if (failed) {
+      error = EQM_ERR_IO;
+      (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s", h5->name, strerror(failed));
     }
   }
   PetscCall(EqmAgree(h5->comm, error, message));
@@ -134,6 +182,15 @@ static PetscErrorCode CheckReadable(EqmH5 h5)
     if (failed) (void)snprintf(message, sizeof(message), "cannot read '%.1000s': %s", h5->name, strerror(failed));
   }
   PetscCall(EqmAgree(h5->comm, failed ? EQM_ERR_IO : 0, message));
+  PetscFunctionReturn(0);
+}
+
+/* A file that has the name now will be called `previous` from the commit on. Call before EqmH5Commit. Not collective.
+ */
+PetscErrorCode EqmH5KeepPrevious(EqmH5 h5, const char *previous)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(h5->atomic.previous, previous, sizeof(h5->atomic.previous)));
   PetscFunctionReturn(0);
 }
 
@@ -174,17 +231,14 @@ PetscErrorCode EqmH5Close(EqmH5 *h5)
   PetscFunctionReturn(0);
 }
 
-/* Reserve the bytes of a file that has been given its length but not its contents; 0 or the error number. */
-static int ReserveBytes(const char *name, off_t *size)
+/* Reserve the bytes that a file will have; 0 or the error number. */
+static int ReserveBytes(const char *name, off_t size)
 {
   const int descriptor = open(name, O_WRONLY);
-  struct stat status;
   int failed = 0;
 
   if (descriptor < 0) return errno;
-  if (fstat(descriptor, &status) != 0) failed = errno;
-  *size = failed ? 0 : status.st_size;
-  if (*size > 0) failed = posix_fallocate(descriptor, 0, *size);
+  if (size > 0) failed = posix_fallocate(descriptor, 0, size);
   if (failed == EINVAL || failed == EOPNOTSUPP)
     failed = 0; /* a file system that cannot reserve: the writes will tell */
   if (close(descriptor) != 0 && !failed) failed = errno;
@@ -197,12 +251,13 @@ static int ReserveBytes(const char *name, off_t *size)
 PetscErrorCode EqmH5Reserve(EqmH5 h5)
 {
   char message[EQM_MESSAGE_MAX] = "";
-  off_t size = 0;
+  hsize_t size = 0;
   int failed = 0;
 
   PetscFunctionBegin;
-  PetscCall(EqmH5Agree(h5, (PetscBool)(H5Fflush(h5->file, H5F_SCOPE_GLOBAL) >= 0), "its arrays cannot be laid out"));
-  if (h5->rank == 0) failed = ReserveBytes(h5->atomic.temporary, &size);
+  PetscCall(EqmH5Agree(h5, (PetscBool)(H5Fget_filesize(h5->file, &size) >= 0), "its arrays cannot be laid out"));
+  if (h5->rank == 0) failed = ReserveBytes(h5->atomic.temporary, (off_t)size);
+  DropCushion(h5);
   if (failed) {
     (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s (it takes %.1f MB)", h5->name,
                    strerror(failed), (double)size / 1e6);
@@ -221,8 +276,6 @@ PetscErrorCode EqmH5Commit(EqmH5 *handle)
   PetscBool fine;
 
   PetscFunctionBegin;
-  fine = (PetscBool)(H5Fflush(h5->file, H5F_SCOPE_GLOBAL) >= 0);
-  PetscCall(EqmH5Agree(h5, fine, "it cannot be flushed"));
   PetscCall(EqmH5PutInteger(h5, "complete", 1));
   fine = (PetscBool)(H5Fclose(h5->file) >= 0);
   h5->file = H5I_INVALID_HID;

@@ -2,7 +2,6 @@
 #include "store.h"
 #include "h5.h"
 #include <stddef.h>
-#include <time.h>
 
 static EqmSlab VertexSlab(EqmSoup soup, PetscInt width)
 {
@@ -135,24 +134,12 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
 /* Who made it, from what, how. */
 static PetscErrorCode PutProvenance(EqmH5 h5, EqmMap map)
 {
-  char *options = NULL, date[32] = "";
-  const time_t now = time(NULL);
-  struct tm parts;
-
   PetscFunctionBegin;
-  if (gmtime_r(&now, &parts)) (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  PetscCall(EqmH5PutText(h5, "version", EqmVersion()));
-  PetscCall(EqmH5PutText(h5, "git_commit", EqmCommit()));
-  PetscCall(EqmH5PutText(h5, "date", date));
+  PetscCall(EqmH5PutProvenance(h5, map->soup->file, map->ranks));
   PetscCall(EqmH5PutText(h5, "command", map->command));
   PetscCall(EqmH5PutText(h5, "method", map->method));
   PetscCall(EqmH5PutText(h5, "linear_solver", map->linear_solver));
-  PetscCall(PetscOptionsGetAll(NULL, &options));
-  PetscCall(EqmH5PutText(h5, "options", options));
-  PetscCall(PetscFree(options));
-  PetscCall(EqmH5PutText(h5, "mesh_file", map->soup->file));
   PetscCall(EqmH5PutInteger(h5, "mesh_checksum", map->soup->checksum));
-  PetscCall(EqmH5PutInteger(h5, "ranks", map->ranks));
   PetscCall(EqmH5PutInteger(h5, "threads", map->threads));
   PetscFunctionReturn(0);
 }

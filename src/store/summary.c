@@ -131,9 +131,9 @@ static void AddCost(cJSON *root, EqmMap map)
   static const struct {
     const char *key;
     EqmPhase phase;
-  } phases[] = {{"read", EQM_PHASE_READ},   {"diagnose", EQM_PHASE_DIAGNOSE}, {"distribute", EQM_PHASE_DISTRIBUTE},
-                {"start", EQM_PHASE_START}, {"minimise", EQM_PHASE_MINIMISE}, {"measure", EQM_PHASE_MEASURE},
-                {"write", EQM_PHASE_WRITE}};
+  } phases[] = {{"read", EQM_PHASE_READ},       {"diagnose", EQM_PHASE_DIAGNOSE}, {"distribute", EQM_PHASE_DISTRIBUTE},
+                {"start", EQM_PHASE_START},     {"minimise", EQM_PHASE_MINIMISE}, {"checkpoint", EQM_PHASE_CHECKPOINT},
+                {"measure", EQM_PHASE_MEASURE}, {"write", EQM_PHASE_WRITE}};
   static const struct {
     const char *key;
     EqmEvent event;

@@ -14,13 +14,33 @@ class Program:
         if os.geteuid() == 0:
             self.environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
-    def run(self, *arguments, ranks=None, timeout=120):
-        """Run; a run that does not end is a failure of its own."""
+    def command(self, arguments, ranks=None):
         ranks = ranks or self.ranks
         mpirun = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-        command = [*(mpirun if ranks > 1 else []), self.path, *map(str, arguments)]  # one rank: as people run it
-        return subprocess.run(command, cwd=self.folder, env=self.environment, timeout=timeout,
+        return [*(mpirun if ranks > 1 else []), self.path, *map(str, arguments)]  # one rank: as people run it
+
+    def run(self, *arguments, ranks=None, timeout=120):
+        """Run; a run that does not end is a failure of its own."""
+        return subprocess.run(self.command(arguments, ranks), cwd=self.folder, env=self.environment, timeout=timeout,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
+
+    def start(self, *arguments, ranks=None):
+        """Start and return at once."""
+        return subprocess.Popen(self.command(arguments, ranks), cwd=self.folder, env=self.environment,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+
+    def processes(self, process):
+        """The numbers of the processes that run the program itself: those below a launcher, or the one alone."""
+        found = []
+        for entry in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                with open(f"/proc/{entry}/stat") as stream:
+                    name, rest = stream.read().rsplit(")", 1)
+            except OSError:
+                continue
+            if int(rest.split()[1]) == process.pid and name.endswith("(equimap"):
+                found.append(int(entry))
+        return found or ([process.pid] if process.args[0] == self.path else [])
 
     def succeed(self, *arguments, codes=(0,), **options):
         """Run, and insist on one of the exit codes."""
