@@ -27,7 +27,8 @@ static const CommandRow commands[] = {
 enum { NUM_COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 
 /* Options without a value: what follows them on the command line is an argument, not their value. */
-static const char *const flags[] = {"-quiet", "-help", "-repair", "-log_view", "-options_left", "-unique", "-version"};
+static const char *const flags[] = {"-quiet",    "-help",         "-repair", "-dry_run",
+                                    "-log_view", "-options_left", "-unique", "-version"};
 
 /* ... but these words, which no mesh is called. */
 static const char *const truths[] = {"0", "1", "true", "false", "yes", "no", "on", "off"};

@@ -9,6 +9,7 @@ typedef struct {
   PetscBool has_output, has_summary, has_history, has_density, has_histogram, has_checkpoint;
   EqmInputOptions input;
   PetscInt hessian_eigenvalues;
+  PetscBool dry_run;
 } MapOptions;
 
 static PetscErrorCode AskOptions(MapOptions *options)
@@ -46,6 +47,8 @@ static PetscErrorCode AskOptions(MapOptions *options)
   PetscCall(PetscOptionsInt("-threads",
                             "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
                             threads, &threads, NULL));
+  PetscCall(PetscOptionsBool("-dry_run", "look at options, mesh and outputs, say whether a run would begin, and stop",
+                             NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();
   if (options->has_density) options->input.density = options->density;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &options->input.quiet, NULL)); /* the solver lists these */
@@ -209,7 +212,13 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   EqmStopCatchSignals();
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   PetscCall(EqmInputRead(line->command, line->argument[0], &options.input, ledger, &input));
-  PetscCall(Solve(line, &options, ledger, &input, status));
+  if (options.dry_run) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                          "%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells: equimap %s can begin\n",
+                          line->argument[0], input.mapped->num_vertices, input.mapped->num_cells, line->command));
+  } else {
+    PetscCall(Solve(line, &options, ledger, &input, status));
+  }
   PetscCall(EqmInputDestroy(&input));
   PetscCall(EqmLedgerDestroy(&ledger));
   PetscFunctionReturn(0);
