@@ -5,6 +5,7 @@ usage: python3 test_presets.py EQUIMAP [RANKS]
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,18 @@ def read_options(preset):
     assert f"equimap {target} MESH -o OUT -options_file config/{preset.name}" in head, preset
     assert "Source: " in head and "Table" in head and "Measured here" in head, preset
     return dict(line.split(": ") for line in lines if not line.startswith("#"))
+
+
+def read_row(preset):
+    """The command and the options of a preset that stands for a row of a paper's table, and that its head is complete."""
+    lines = preset.read_text(encoding="utf-8").splitlines()
+    head = "\n".join(line for line in lines if line.startswith("#"))
+    name = preset.relative_to(CONFIG)
+    command = re.search(rf"^# equimap (\w+) MESH -o OUT -options_file config/{re.escape(str(name))}$", head, re.MULTILINE)
+    assert command, (preset, "the first line says how it is used")
+    for word in ("# Source: ", f"({preset.parent.name})", "Table", "# Mesh: ", "# Published", "# Measured here"):
+        assert word in head, (preset, word)
+    return command[1], dict(line.split(": ") for line in lines if not line.startswith("#"))
 
 
 def main(equimap, ranks):
@@ -56,6 +69,18 @@ def main(equimap, ranks):
         if preset.stem.endswith("-default") and ranks == "1":
             run(target, "patch.obj", "-o", "bare.h5")
             assert numpy.array_equal(coordinates("bare.h5"), coordinates(f"{preset.stem}.h5")), preset
+
+    known = set()
+    for preset in sorted(CONFIG.glob("*/*.yaml")):  # of those with the same options, one is tried
+        command, options = read_row(preset)
+        mesh = {"sphere": "head.obj", "ball": "ball.msh"}.get(command, "patch.obj")
+        if (command, *options.items()) in known or ranks != "1":
+            continue
+        known.add((command, *options.items()))
+        if not os.path.exists(mesh):
+            run("generate", mesh.split(".")[0], "-n", "300", "-o", mesh)
+        run(command, mesh, "-o", "row.h5", "-options_file", preset, "-dry_run", expected=(0,))
+    assert not os.path.exists("row.h5")
 
     overruled = ("-o", "few.h5", "-options_file", CONFIG / "disk-ncg.yaml")
     for arguments in (("-max_it", "3", *overruled), (*overruled, "-max_it", "3")):  # the command line wins, either way
