@@ -1,4 +1,4 @@
-# Installation: the program, the library, the headers, presets, and two ways to find them: a CMake package (equimap::equimap)
+# Installation: the program, the library, the headers, presets, batch scripts, and two ways to find them: a CMake package (equimap::equimap)
 # and pkg-config (equimap). Included at the end of the main CMakeLists.txt.
 include(CMakePackageConfigHelpers)
 set(EQUIMAP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/equimap)
@@ -8,6 +8,8 @@ install(TARGETS libequimap EXPORT equimapTargets LIBRARY DESTINATION ${CMAKE_INS
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/equimap/config OPTIONAL)
+install(DIRECTORY jobs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/equimap/jobs USE_SOURCE_PERMISSIONS
+        PATTERN demo.sh EXCLUDE PATTERN setup.sh EXCLUDE PATTERN __pycache__ EXCLUDE)
 install(EXPORT equimapTargets NAMESPACE equimap:: DESTINATION ${EQUIMAP_PACKAGE_DIR})
 
 # A static library does not say what it stands on: its users link that, too.

@@ -1,0 +1,155 @@
+# shellcheck shell=bash disable=SC2034 # what is set here is used by the scripts that source this file
+# What the batch scripts share; sourced by run.slurm, run.pbs, run.lsf and sweep.*. Bash.
+#
+#   find_equimap               sets `equimap`: $EQUIMAP, else build/equimap of this tree, else the installed one
+#   find_launcher              sets `launcher`: $EQUIMAP_MPIRUN, else mpirun on $ranks ranks
+#   with_checkpoint ARGS...    sets `arguments`: ARGS with a checkpoint beside the output, and -restart where one lies there
+#   watch_the_clock SECONDS    adds -wall_time to them, for a job that has so long and is not warned before its end
+#   run_and_forward COMMAND... runs it, hands USR1 and TERM on as USR1, sets `code` to its exit code
+#   finish                     ends the script with `code`; after 75, submits the job again by calling `requeue`, at most
+#                              $EQUIMAP_REQUEUES times (20), `attempt` being how often that has happened already
+#   sweep_row ROW TABLE ...    one row of a sweep, or the whole sweep if ROW is empty, to the end of the script
+jobs_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+stopped=75 # equimap's exit code for "stopped on request with a checkpoint"
+
+say() { echo "$(date '+%F %T') $*"; }
+
+find_equimap() {
+  equimap=${EQUIMAP:-$jobs_dir/../build/equimap}
+  [ -n "${EQUIMAP:-}" ] || [ -x "$equimap" ] || equimap=$(command -v equimap || true)
+  if [ -z "$equimap" ] || [ ! -x "$equimap" ]; then
+    say "there is no program '${equimap:-equimap}'; build it, or set EQUIMAP to where it is" >&2
+    exit 2
+  fi
+}
+
+# Open MPI ties a rank to one core unless told otherwise, and refuses root unless told twice.
+find_launcher() {
+  if [ "$(id -u)" -eq 0 ]; then
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  fi
+  launcher=(mpirun -n "$ranks" --bind-to none)
+  [ -z "${EQUIMAP_MPIRUN:-}" ] || read -ra launcher <<<"${EQUIMAP_MPIRUN//%n/$ranks}"
+}
+
+# The value of an option in ARGS, or nothing.
+option_value() {
+  local name=$1
+  shift
+  while [ $# -gt 1 ]; do
+    [ "$1" != "$name" ] || { echo "$2"; return; }
+    shift
+  done
+}
+
+with_checkpoint() {
+  local output
+  arguments=("$@")
+  output=$(option_value -o "$@")
+  checkpoint=$(option_value -checkpoint "$@")
+  if [ -z "$checkpoint" ]; then
+    checkpoint=${output%%,*}
+    checkpoint=${checkpoint%.*}.checkpoint.h5
+    arguments+=(-checkpoint "$checkpoint")
+  fi
+  if [ -z "$(option_value -restart "$@")" ] && { [ -e "$checkpoint" ] || [ -e "$checkpoint.previous" ]; }; then
+    say "going on from $checkpoint"
+    arguments+=(-restart "$checkpoint")
+  fi
+}
+
+run_and_forward() {
+  local child woken=yes
+  "$@" &
+  child=$!
+  trap 'woken=yes; say "told to stop (USR1)"; kill -USR1 $child 2>/dev/null' USR1
+  trap 'woken=yes; say "told to stop (TERM)"; kill -USR1 $child 2>/dev/null' TERM
+  while [ $woken = yes ]; do # a signal ends the waiting, not the program
+    woken=no
+    code=0
+    wait $child || code=$?
+  done
+  trap - USR1 TERM
+}
+
+# A run that has come to its end needs no checkpoint; one that has only come to -max_it (4) may be given more.
+forget_checkpoint() {
+  if [ "$code" -eq 0 ] && [ -n "${checkpoint:-}" ]; then rm -f "$checkpoint" "$checkpoint.previous"; fi
+}
+
+finish() {
+  local most=${EQUIMAP_REQUEUES:-20}
+  if [ "$code" -ne $stopped ]; then
+    forget_checkpoint
+    say "ended with exit code $code"
+  elif [ "$attempt" -ge "$most" ]; then
+    say "stopped with a checkpoint, and submitted again $attempt times already: enough (EQUIMAP_REQUEUES=$most);" \
+      "submit it by hand to go on" >&2
+  elif requeue; then
+    say "stopped with a checkpoint; submitted again ($((attempt + 1)) of at most $most)"
+  else
+    say "stopped with a checkpoint, but could not be submitted again; submit it by hand to go on" >&2
+  fi
+  exit "$code"
+}
+
+sweep_row() {
+  local row=$1
+  shift
+  say "sweep ${row:+row $row }$*, attempt $((attempt + 1))"
+  run_and_forward "$jobs_dir/sweep.py" "$@" ${row:+--rows "$row" --no-collect}
+  finish
+}
+
+# ---- a clock to watch: three minutes, or a tenth of a short time, are kept for the checkpoint and the end
+wall_time() {
+  local seconds=$1 kept
+  kept=$((seconds / 10 < 180 ? seconds / 10 : 180))
+  [ "$seconds" -eq 0 ] || echo $((seconds - kept))
+}
+watch_the_clock() {
+  local limit
+  limit=$(wall_time "$1")
+  [ -z "$limit" ] || [ -n "$(option_value -wall_time "${arguments[@]}")" ] || arguments+=(-wall_time "$limit")
+}
+
+# ---- PBS
+# The job's walltime in seconds; 0 if it cannot be told.
+pbs_seconds() {
+  local text hours minutes seconds
+  text=${EQUIMAP_WALLTIME:-$(qstat -f "${PBS_JOBID:-}" 2>/dev/null | sed -n 's/.*Resource_List.walltime = //p')}
+  [[ $text =~ ^([0-9]+):([0-9]+):([0-9]+)$ ]] || { echo 0; return; }
+  hours=${BASH_REMATCH[1]} minutes=${BASH_REMATCH[2]} seconds=${BASH_REMATCH[3]}
+  echo $((10#$hours * 3600 + 10#$minutes * 60 + 10#$seconds))
+}
+# Submit SCRIPT with this job's environment and resources, which submit.py leaves in EQUIMAP_QSUB.
+pbs_submit_again() {
+  local resources
+  eval "resources=(${EQUIMAP_QSUB:-})"
+  export EQUIMAP_ATTEMPT=$((attempt + 1)) EQUIMAP_JOBS=$jobs_dir
+  qsub -V "${resources[@]}" "$1"
+}
+
+# ---- LSF: a requeued job keeps its number, and nobody counts but we
+lsf_attempt() {
+  counter=$1.requeues-${LSB_JOBID:-0}
+  attempt=$(cat "$counter" 2>/dev/null || echo 0)
+}
+# Code 75 makes LSF requeue the job (-Q 75): that is given only while there is a turn left.
+lsf_finish() {
+  local most=${EQUIMAP_REQUEUES:-20}
+  if [ "$code" -eq $stopped ] && [ "$attempt" -lt "$most" ]; then
+    echo $((attempt + 1)) >"$counter"
+    say "stopped with a checkpoint; back into the queue ($((attempt + 1)) of at most $most)"
+    exit $stopped
+  fi
+  rm -f "$counter"
+  forget_checkpoint
+  if [ "$code" -eq $stopped ]; then
+    code=1
+    say "stopped with a checkpoint, and requeued $attempt times already: enough (EQUIMAP_REQUEUES=$most);" \
+      "submit it by hand to go on" >&2
+  fi
+  say "ended with exit code $code"
+  exit "$code"
+}

@@ -1,0 +1,261 @@
+#!/usr/bin/env python3
+"""Run the rows of a table, and set the papers' figures beside ours.
+
+    jobs/sweep.py TABLE                             on this machine, row by row; then the result's table and its plots
+    jobs/sweep.py TABLE --rows 2,5-8                some rows
+    jobs/sweep.py TABLE --list                      how far it has come; runs nothing
+    jobs/sweep.py TABLE --collect                   only the result's table and the plots, of what is there
+    sbatch --array=1-24%4 jobs/sweep.slurm TABLE    under Slurm; PBS and LSF: sweep.pbs, sweep.lsf; jobs/submit.py helps
+    jube run jobs/sweep.xml                         under JUBE: see there
+
+What a table is: see sweep_table.py; examples lie in jobs/tables/. Meshes are looked for in --meshes (EQUIMAP_MESHES, or
+here), results go to --results (EQUIMAP_RESULTS, or sweep-TABLE), a folder per row with result, summary, history and log.
+Rows whose mesh is not there are left out, and listed.
+
+It may be stopped at any time (Ctrl-C, USR1, TERM, a kill) and started again: finished rows are skipped, interrupted ones
+go on from their checkpoint, failed ones are listed and, with --retry, run again. A row that has changed in the table, or
+whose mesh or preset has, is run anew.
+
+Exit code: 0 all is done, 1 some rows failed, 2 wrong usage, 75 stopped on request: start again to go on.
+"""
+import argparse
+import contextlib
+import fcntl
+import os
+import pathlib
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import sweep_report
+from sweep_table import MAP_WRITTEN, STOPPED, Store, TableError, find_mesh, find_preset, fingerprint, generated, read_table
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+class Stop:
+    """Turns USR1, TERM and Ctrl-C into a USR1 for the run at hand."""
+
+    def __init__(self):
+        self.asked = False
+        self.child = None
+        for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, self.take)
+
+    def take(self, number, _):
+        self.asked = True
+        print(f"sweep: told to stop ({signal.Signals(number).name})", flush=True)
+        if self.child and self.child.poll() is None:
+            self.child.send_signal(signal.SIGUSR1)
+
+
+def row_numbers(text):
+    """1,4-6 as a set."""
+    numbers = set()
+    for part in text.split(","):
+        first, _, last = part.partition("-")
+        numbers.update(range(int(first), int(last or first) + 1))
+    return numbers
+
+
+def find_program():
+    built = HERE.parent / "build" / "equimap"
+    return os.environ.get("EQUIMAP") or (str(built) if built.exists() else shutil.which("equimap"))
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table")
+    parser.add_argument("--rows", type=row_numbers, help="numbers from 1, like 2,5-8")
+    parser.add_argument("--results", default=os.environ.get("EQUIMAP_RESULTS"))
+    parser.add_argument("--meshes", default=os.environ.get("EQUIMAP_MESHES", "."))
+    parser.add_argument("--program", default=find_program(), help="default: EQUIMAP, or build/equimap")
+    parser.add_argument("--retry", action="store_true", help="run failed rows again")
+    parser.add_argument("--no-collect", action="store_true", help="no table and plots at the end")
+    parser.add_argument("--list", action="store_true", help="say how far it has come; run nothing")
+    parser.add_argument("--collect", action="store_true", help="write table and plots; run nothing")
+    parser.add_argument("--numbers", action="store_true", help="print the numbers of the rows, for other programs")
+    args = parser.parse_args()
+    args.results = pathlib.Path(args.results or "sweep-" + pathlib.Path(args.table).stem)
+    return args
+
+
+def environment(threads):
+    result = dict(os.environ, OMP_NUM_THREADS=str(threads))
+    if os.geteuid() == 0:  # Open MPI refuses root unless told twice
+        result.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    return result
+
+
+@contextlib.contextmanager
+def locked(path):
+    """Hold a file's lock; yields False if another process holds it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+            return
+        yield True
+
+
+def place_of_mesh(args, row):
+    """The row's mesh, generated if it is one of ours; None if it is not there."""
+    shape = generated(row.mesh)
+    return args.results / "meshes" / f"{shape[0]}-{shape[1]}.h5" if shape else find_mesh(row.mesh, args.meshes)
+
+
+def generate(args, row):
+    """Make the mesh of a row like hills:20000 unless it is there; several rows may want it at once."""
+    mesh = place_of_mesh(args, row)
+    if not generated(row.mesh) or mesh.exists():
+        return mesh
+    mesh.parent.mkdir(parents=True, exist_ok=True)
+    shape, vertices = generated(row.mesh)
+    part = mesh.with_name(f"part-{os.getpid()}-{mesh.name}")
+    done = subprocess.run([args.program, "generate", shape, "-n", str(vertices), "-o", str(part)], env=environment(1),
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if done.returncode:
+        raise TableError(f"row {row.number}: cannot generate {row.mesh}: {done.stdout.strip()[-200:]}")
+    os.replace(part, mesh)
+    part.with_suffix(".xmf").unlink(missing_ok=True)
+    return mesh
+
+
+def launcher(ranks):
+    """How a run is started: alone on one rank, else by mpirun or what EQUIMAP_MPIRUN names."""
+    if os.environ.get("EQUIMAP_MPIRUN"):
+        return shlex.split(os.environ["EQUIMAP_MPIRUN"].replace("%n", str(ranks)))
+    if ranks == 1:
+        return []
+    return ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+
+
+def command_line(args, row, store, mesh):
+    preset = find_preset(row.preset)
+    command = [*launcher(row.ranks), args.program, row.command, str(mesh), "-o", str(store.folder / "result.h5"),
+               "-summary", str(store.summary_file), "-history", str(store.history_file), "-threads", str(row.threads)]
+    command += ["-options_file", str(preset)] if preset else []
+    command += ["-checkpoint", str(store.checkpoint)]
+    command += ["-restart", str(store.checkpoint)] if store.has_checkpoint() else []
+    return command + row.options
+
+
+def run_row(args, row, store, mesh, stop):
+    """Run a row to its end or to a stop, and note how it ended."""
+    before = store.outcome()
+    mark = fingerprint(row, mesh)
+    if before is None or before["fingerprint"] != mark or before["exit_code"] == 7:  # another run's checkpoint
+        if before is not None:
+            store.clear("lock")
+        before = {"attempts": 0, "wall_seconds": 0.}
+    command = command_line(args, row, store, mesh)
+    # Written before the run as well: if it is killed, its checkpoint is known to be this row's.
+    record = {"fingerprint": mark, "exit_code": None, "attempts": before["attempts"] + 1,
+              "wall_seconds": before["wall_seconds"], "command": command}
+    store.write_outcome(record)
+    begin = time.monotonic()
+    with open(store.log_file, "a", encoding="utf-8") as log:
+        log.write(f"$ {shlex.join(command)}\n")
+        log.flush()
+        stop.child = subprocess.Popen(command, env=environment(row.threads), stdin=subprocess.DEVNULL, stdout=log,
+                                      stderr=subprocess.STDOUT, start_new_session=True)  # Ctrl-C is for us alone
+        if stop.asked:
+            stop.child.send_signal(signal.SIGUSR1)
+        code = stop.child.wait()
+    if code in MAP_WRITTEN:
+        store.forget_checkpoint()
+    store.write_outcome({**record, "exit_code": code, "wall_seconds": before["wall_seconds"] + time.monotonic() - begin})
+
+
+def process(args, row, stop):
+    """Run a row unless there is nothing to do; its state afterwards."""
+    mesh = generate(args, row)
+    if mesh is None:
+        return "no mesh"
+    store = Store(args.results, row)
+    with locked(store.folder / "lock") as mine:
+        if not mine:
+            return "running elsewhere"
+        state = store.state(mesh)
+        if state == "finished" or (state == "failed" and not args.retry):
+            print(f"sweep: row {row.number}, {row.name}: {describe(store)} (before)", flush=True)
+            return state
+        print(f"sweep: row {row.number}, {row.name}: {'goes on' if store.has_checkpoint() else 'begins'}", flush=True)
+        run_row(args, row, store, mesh, stop)
+        print(f"sweep: row {row.number}, {row.name}: {describe(store)}", flush=True)
+        return store.state(mesh)
+
+
+def describe(store):
+    """The row's end in a line."""
+    code, summary = store.outcome()["exit_code"], store.summary()
+    if code not in MAP_WRITTEN or not summary:
+        return f"exit code {code}: {store.complaint()}"
+    return (f"{summary['status']}, energy {summary['energy']['final']:.4e}, {summary['folds']} folds, "
+            f"{summary['seconds']['total']:.1f} s")
+
+
+def state_of(args, row):
+    mesh = place_of_mesh(args, row)
+    if mesh is None:
+        return "no mesh"
+    return Store(args.results, row).state(mesh) if mesh.exists() else "to do"
+
+
+def tell(args, states):
+    """How many rows are where; of those that are not finished, which."""
+    groups = {}
+    for row, state in states:
+        groups.setdefault(state, []).append(row)
+    print(", ".join(f"{len(rows)} {state}" for state, rows in groups.items()))
+    for state, rows in groups.items():
+        for row in rows if state != "finished" else ():
+            word = Store(args.results, row).complaint() if state == "failed" else row.mesh if state == "no mesh" else ""
+            print(f"  {state}: row {row.number}, {row.name}" + (f": {word}" if word else ""))
+
+
+def exit_code(states, stop):
+    kinds = {state for _, state in states}
+    if kinds == {"no mesh"}:
+        print("sweep: none of the meshes is there; say where they are with --meshes or EQUIMAP_MESHES", file=sys.stderr)
+        return 2
+    if stop.asked or kinds & {"interrupted", "begun"}:
+        return STOPPED
+    return 1 if "failed" in kinds else 0
+
+
+def main():
+    args = arguments()
+    rows = read_table(args.table)
+    chosen = [row for row in rows if args.rows is None or row.number in args.rows]
+    if not chosen:
+        raise TableError(f"{args.table} has rows 1 to {len(rows)}: none of those asked for")
+    if args.numbers:
+        print(",".join(str(row.number) for row in chosen))
+        return 0
+    for row in chosen:
+        find_preset(row.preset), find_preset(row.paper)  # complain before the first run, not after the last
+    if not (args.list or args.collect) and not args.program:
+        raise TableError("there is no program; build it, or say where it is with --program or EQUIMAP")
+    stop = Stop()
+    states = []
+    for row in chosen:
+        idle = args.list or args.collect or stop.asked
+        states.append((row, state_of(args, row) if idle else process(args, row, stop)))
+    tell(args, states)
+    if not args.list and not args.no_collect:
+        sweep_report.write(args.results, [row for row in rows if state_of(args, row) == "finished"])
+    return exit_code(states, stop)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except TableError as problem:
+        print(f"sweep: {problem}", file=sys.stderr)
+        sys.exit(2)

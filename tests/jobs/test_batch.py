@@ -1,0 +1,143 @@
+"""The batch scripts of PBS and LSF with stand-ins for qsub and bsub, and what submit.py says and refuses.
+
+usage: python3 test_batch.py EQUIMAP
+"""
+import os
+import pathlib
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+JOBS = pathlib.Path(__file__).resolve().parents[2] / "jobs"
+ENDLESS = "method: rgd\nmax_it: 100000000\nenergy_rtol: 0\ncheckpoint_every: 100\n"
+COMMAND = "sphere head.obj -o {name}.h5 -options_file {name}.yaml"
+
+
+def script(name, *arguments, expected, until=None, **environment):
+    """Run a batch script as its system would; tell it to stop once the file `until` is there."""
+    process = subprocess.Popen([JOBS / name, *arguments], env={**os.environ, **environment}, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True, start_new_session=True)
+    end = time.monotonic() + 60
+    while until and not os.path.exists(until):
+        assert process.poll() is None and time.monotonic() < end, process.communicate()[0]
+        time.sleep(.05)
+    if until:
+        process.send_signal(signal.SIGTERM)
+    said = process.communicate(timeout=90)[0]
+    assert process.returncode == expected, (name, process.returncode, said)
+    return said
+
+
+def write_options(name, text=ENDLESS):
+    pathlib.Path(f"{name}.yaml").write_text(text)
+
+
+def stand_in(name):
+    """A command that notes how it was called, and some of its environment."""
+    path = pathlib.Path("bin") / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(f'#!/bin/sh\necho "$0 $*" >>{name}.log\nenv | grep ^EQUIMAP_ >>{name}.log\necho 4711\n')
+    path.chmod(0o755)
+
+
+def check_pbs():
+    """Stopped by TERM or by its own clock, the job submits itself again with all that it was given."""
+    write_options("pbs")
+    given = {"EQUIMAP_COMMAND": COMMAND.format(name="pbs"), "EQUIMAP_JOBS": str(JOBS), "PBS_JOBID": "1.server",
+             "EQUIMAP_QSUB": "-N equimap -l select=1:ncpus=1:mpiprocs=1", "EQUIMAP_RANKS": "1"}
+    said = script("run.pbs", expected=75, until="pbs.checkpoint.h5", **given)
+    assert "told to stop (TERM)" in said and "submitted again (1 of at most 20)" in said, said
+    noted = pathlib.Path("qsub.log").read_text()
+    assert "-V -N equimap -l select=1:ncpus=1:mpiprocs=1" in noted and "EQUIMAP_ATTEMPT=1" in noted, noted
+    said = script("run.pbs", expected=75, EQUIMAP_ATTEMPT="1", EQUIMAP_WALLTIME="00:00:03", EQUIMAP_REQUEUES="1", **given)
+    assert "going on from pbs.checkpoint.h5" in said and "stopped by -wall_time 3" in said, said
+    assert "enough (EQUIMAP_REQUEUES=1)" in said and pathlib.Path("qsub.log").read_text() == noted, said
+    write_options("pbs", ENDLESS.replace("100000000", "10"))
+    said = script("run.pbs", expected=4, EQUIMAP_ATTEMPT="2", **given)
+    assert "restart from " in said and "ended with exit code 4" in said, said
+    pathlib.Path("t.csv").write_text("name,command,mesh,options\none,sphere,head.obj,-max_it 3\ntwo,sphere,head.obj,-max_it 4\n")
+    script("sweep.pbs", expected=0, PBS_ARRAY_INDEX="2", EQUIMAP_TABLE="t.csv", EQUIMAP_SWEEP="--results pbs-swept",
+           EQUIMAP_JOBS=str(JOBS), PBS_JOBID="2[2].server")
+    assert os.listdir("pbs-swept") == ["two"]
+
+
+def check_lsf():
+    """Code 75, for which LSF requeues the job, as long as there is a turn left; 1 afterwards."""
+    write_options("lsf")
+    words = shlex.split(COMMAND.format(name="lsf"))
+    given = {"LSB_JOBID": "7", "LSB_DJOB_NUMPROC": "1", "EQUIMAP_JOBS": str(JOBS), "EQUIMAP_REQUEUES": "1"}
+    said = script("run.lsf", *words, expected=75, until="lsf.checkpoint.h5", **given)
+    assert "back into the queue (1 of at most 1)" in said, said
+    said = script("run.lsf", *words, "-wall_time", "2", expected=1, **given)
+    assert "attempt 2" in said and "going on from " in said and "enough (EQUIMAP_REQUEUES=1)" in said, said
+    write_options("lsf", ENDLESS.replace("100000000", "10").replace("energy_rtol: 0", "energy_target: 1e6"))
+    said = script("run.lsf", *words, expected=0, **given)
+    assert "restart from " in said, said
+    assert not list(pathlib.Path(".").glob("lsf.checkpoint*")), "a run that has converged needs no checkpoint"
+    script("sweep.lsf", "t.csv", "--results", "lsf-swept", expected=0, LSB_JOBINDEX="1", **given)
+    assert os.listdir("lsf-swept") == ["one"]
+
+
+def submit(*words, expected=0):
+    done = subprocess.run([sys.executable, JOBS / "submit.py", *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, timeout=60, check=False)
+    assert done.returncode == expected and "Traceback" not in done.stdout, (words, done.returncode, done.stdout)
+    return done.stdout
+
+
+def check_submit():
+    """What is said to each system, and what never gets there."""
+    run = ("sphere", "head.obj", "-o", "map.h5", "-max_it", "3")
+    resources = ("--dry-run", "--ranks", "4", "--threads", "2", "--nodes", "2", "--time", "2:30:00", "--memory", "8G",
+                 "--queue", "long", "--account", "maps")
+    said = submit("--system", "pbs", *resources, *run)
+    assert "select=2:ncpus=4:mpiprocs=2:ompthreads=2:mem=8192mb -l walltime=2:30:00 -q long -A maps" in said, said
+    assert "EQUIMAP_COMMAND='sphere head.obj -o map.h5 -max_it 3'" in said, said
+    said = submit("--system", "lsf", *resources, *run)
+    assert "-n 4 -W 2:30 -wt 3 -wa USR1 -r -Q 75" in said and "-q long -P maps" in said, said
+    said = submit("--system", "pbs", "--time", "10", "--sweep", "t.csv", "--results", "sent")
+    assert "qsub -V -J 1-2 " in pathlib.Path("qsub.log").read_text() and "4711" in said, said
+    assert "fewer would be faster" in submit("--system", "lsf", "--dry-run", "--ranks", "8", *run)
+    os.makedirs("closed")
+    wrong = {
+        ("--dry-run", "sphere", "absent.obj", "-o", "m.h5"): "cannot read absent.obj",
+        ("--dry-run", "disk", "head.obj", "-o", "m.h5"): "cannot be mapped to the disk",
+        ("--dry-run", "sphere", "head.obj"): "no output named",
+        ("--dry-run", "sphere", "head.obj", "-o", "no/where/m.h5"): "no/where",
+        ("--dry-run", "sphere", "head.obj", "-o", "head.obj"): "head.obj",
+        ("--dry-run", "sphere", "head.obj", "-o", "m.h5", "-maxit", "3"): "unknown option -maxit",
+        ("--dry-run", "sphere", "head.obj", "-o", "m.h5", "-method", "best"): "best",
+        ("--dry-run", "--time", "1", *run): "no time between",
+        ("--dry-run", "--nodes", "3", "--ranks", "2", *run): "more nodes than ranks",
+        ("--dry-run", "--time", "soon", *run): "'soon' is no time",
+        ("--dry-run", "--memory", "lots", *run): "'lots' is no amount of memory",
+        ("--dry-run", "--sweep", "absent.csv"): "cannot read the table",
+        ("--dry-run", "register", "head.obj", "head.obj", "-o", "m.h5"): "'register' is none",
+        ("--dry-run",): "--sweep TABLE",
+        (*run,): "no bsub",
+    }
+    for words, complaint in wrong.items():
+        said = submit("--system", "lsf", *words, expected=2)
+        assert complaint in said, (words, said)
+    assert not os.path.exists("m.h5") and not os.path.exists("map.h5")
+
+
+def main(program):
+    subprocess.run([program, "generate", "head", "-n", "600", "-o", "head.obj"], check=True, stdout=subprocess.DEVNULL)
+    stand_in("qsub")
+    os.environ.update(EQUIMAP=program, PATH=f"{os.getcwd()}/bin:{os.environ['PATH']}")
+    check_pbs()
+    check_lsf()
+    check_submit()
+    print("batch: PBS and LSF stopped, gone on with and capped; submit.py says what it should and refuses what it must")
+
+
+if __name__ == "__main__":
+    path = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        main(path)
+        os.chdir("/")

@@ -1,0 +1,195 @@
+"""Sweep tables: run, stop, kill, go on, skip, fail, change; the result's table and plots; tables that make no sense; JUBE.
+
+usage: python3 test_sweep.py EQUIMAP
+"""
+import csv
+import importlib.util
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+JOBS = pathlib.Path(__file__).resolve().parents[2] / "jobs"
+sys.path.insert(0, str(JOBS))
+import sweep_table  # noqa: E402
+
+HEADER = "name,command,mesh,preset,options,paper,ranks,threads,against\n"
+ENDLESS = "method: rgd\nmax_it: 1000000\nenergy_rtol: 0\ncheckpoint_every: 100\n"
+
+
+def sweep(*arguments, expected=0, **environment):
+    done = subprocess.run([sys.executable, JOBS / "sweep.py", *map(str, arguments)], env={**os.environ, **environment},
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120, check=False)
+    assert done.returncode == expected, (arguments, done.returncode, done.stdout)
+    return done.stdout
+
+
+def start(table):
+    return subprocess.Popen([sys.executable, JOBS / "sweep.py", table], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                            text=True, start_new_session=True)
+
+
+def wait_for(path, process):
+    """Until a run that goes on for ever has come as far as a checkpoint."""
+    end = time.monotonic() + 60
+    while not path.exists():
+        assert process.poll() is None and time.monotonic() < end, process.communicate()[0]
+        time.sleep(.05)
+
+
+def lines_of(name):
+    with open(name, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def write_table(path, *rows):
+    pathlib.Path(path).write_text("# a comment\n" + HEADER + "".join(row + "\n" for row in rows), encoding="utf-8")
+
+
+def last_iteration(folder):
+    return int(lines_of(folder / "history.csv")[-1]["iteration"])
+
+
+def check_run():
+    """Rows that finish, one that fails, one without a mesh; a second time, nothing is run again."""
+    write_table("t.csv", "paper,disk,hills:400,disk-fixed-point,-max_it 20,,1,1,", "default,disk,hills:400,,,disk-ncg,2,2,",
+                "wrong,disk,hills:400,,-method nonsense,,1,1,", "absent,disk,nowhere,,,,1,1,",
+                "sphere,sphere,head:300,001/table2-david-head,-max_it 12,,1,1,",
+                "noise,sphere,head:300,001/table7-david-head,-max_it 12,,1,1,sphere")
+    said = sweep("t.csv", expected=1)
+    assert "4 finished" in said and "failed: row 3, wrong: equimap: " in said and "nonsense" in said, said
+    assert "no mesh: row 4, absent: nowhere" in said, said
+    lines = {(line["name"], line["iterations"]): line for line in lines_of("sweep-t/sweep.csv")}
+    paper = lines["paper", "20"]
+    assert float(paper["paper.energy"]) == 4.77e-3 and float(paper["energy"]) > 0. and paper["folds"] == "0"
+    assert 300 < int(paper["vertices"]) < 500 and (paper["ranks"], paper["method"]) == ("1", "fixed-point")
+    default = [line for line in lines.values() if line["name"] == "default"][0]
+    assert float(default["paper.energy"]) == 8.30e-4 and (default["ranks"], default["threads"]) == ("2", "2")
+    assert float(lines["sphere", "10"]["paper.energy"]) == 4.04e-3, "what the paper has after ten of a hundred iterations"
+    assert float(lines["sphere", "10"]["energy"]) > float(lines["sphere", "12"]["energy"]) > 0.
+    noise = lines["noise", "12"]
+    assert float(noise["noise_error"]) > 0. and float(noise["paper.noise_error"]) == 4.47e-3
+    if importlib.util.find_spec("matplotlib"):
+        for name in ("energy", "time"):
+            assert pathlib.Path(f"sweep-t/{name}.png").read_bytes().startswith(b"\x89PNG")
+    before = pathlib.Path("sweep-t/paper/outcome.json").stat().st_mtime_ns
+    said = sweep("t.csv", "--no-collect", expected=1)
+    assert said.count("(before)") == 5 and "begins" not in said, said
+    assert pathlib.Path("sweep-t/paper/outcome.json").stat().st_mtime_ns == before
+    assert "row 3, wrong: begins" in sweep("t.csv", "--retry", "--rows", "3", "--no-collect", expected=1)
+    assert not list(pathlib.Path("sweep-t").glob("*/checkpoint*")), "finished rows need none"
+
+
+def check_change():
+    """A row that has changed is run anew, and only that."""
+    write_table("t.csv", "paper,disk,hills:400,disk-fixed-point,-max_it 21,,1,1,", "default,disk,hills:400,,,disk-ncg,2,2,")
+    said = sweep("t.csv", "--no-collect")
+    assert "row 1, paper: begins" in said and "row 2, default: converged" in said and last_iteration(
+        pathlib.Path("sweep-t/paper")) == 21, said
+    assert "2 finished" in sweep("t.csv", "--list")
+
+
+def check_stop(kind, code):
+    """Stopped, or killed, in the middle of a row: the row goes on from its checkpoint when the sweep is started again."""
+    folder = pathlib.Path("sweep-s/long")
+    pathlib.Path("s.yaml").write_text(ENDLESS)
+    write_table("s.csv", "long,sphere,head:600,,-options_file s.yaml,,1,1,", "next,disk,hills:400,,-max_it 2,,1,1,")
+    process = start("s.csv")
+    wait_for(folder / "checkpoint.h5", process)
+    if kind == signal.SIGKILL:
+        os.killpg(process.pid, kind)
+        program = sweep_table.read_json(folder / "outcome.json")["command"][0]
+        end_runs_of(program, folder)
+    else:
+        process.send_signal(kind)
+    said = process.communicate(timeout=60)[0]
+    assert process.returncode == code, (process.returncode, said)
+    assert "row 2, next: begins" not in said and sweep_table.read_json(folder / "outcome.json")["exit_code"] == (
+        75 if code == 75 else None), said
+    assert ("interrupted: row 1" if code == 75 else "begun: row 1") in sweep("s.csv", "--list", expected=75)
+    pathlib.Path("s.yaml").write_text(ENDLESS.replace("1000000", "10"))  # it has more behind it: the end
+    said = sweep("s.csv", "--no-collect")
+    assert "row 1, long: goes on" in said and "2 finished" in said, said
+    assert last_iteration(folder) >= 10
+    assert sweep_table.read_json(folder / "outcome.json")["attempts"] == 2
+    shutil.rmtree("sweep-s")
+
+
+def end_runs_of(program, folder):
+    """The program has a session of its own: what a killed sweep leaves behind is ended here."""
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            words = (entry / "cmdline").read_bytes().split(b"\0") if entry.name.isdigit() else []
+        except OSError:
+            continue
+        if words and words[0].decode() == program and any(str(folder).encode() in word for word in words):
+            os.kill(int(entry.name), signal.SIGKILL)
+
+
+def check_mistakes():
+    """Said in a line, with exit code 2, before anything is run."""
+    cases = {
+        "name,command\nx,disk\n": "no column mesh",
+        HEADER: "has no rows",
+        HEADER + "a,disk,m,,,,1,1,\na,disk,m,,,,1,1,\n": "two rows are called a",
+        HEADER + "a,disk,m,,,,none,1,\n": "ranks is 'none'",
+        HEADER + "a/b,disk,m,,,,1,1,\n": "'a/b' is no name",
+        HEADER + "a,disk,m,no-such,,,1,1,\n": "no preset 'no-such'",
+        HEADER + "a,disk,m,,-x 'y,,1,1,\n": "cannot be understood",
+        HEADER + "a,disk,nowhere,,,,1,1,\n": "none of the meshes is there",
+    }
+    for content, complaint in cases.items():
+        pathlib.Path("m.csv").write_text(content)
+        said = sweep("m.csv", expected=2)
+        assert complaint in said and "Traceback" not in said, (content, said)
+    assert "cannot read the table" in sweep("absent.csv", expected=2)
+
+
+def check_tables():
+    """The tables of the tree can be read, and their presets are there and hold figures."""
+    for table in sorted((JOBS / "tables").glob("*.csv")):
+        for row in sweep_table.read_table(table):
+            sweep_table.find_preset(row.preset)
+            assert not row.paper or sweep_table.published(sweep_table.find_preset(row.paper)), (table, row)
+            against = row.others.get("against")
+            assert not against or against in [other.name for other in sweep_table.read_table(table)], row
+
+
+def check_jube():
+    """The same table under JUBE."""
+    if not shutil.which("jube"):
+        print("JUBE is not there (Debian: jube): left out")
+        return
+    write_table("j.csv", "one,disk,hills:400,,-max_it 3,,1,1,", "absent,disk,nowhere,,,,1,1,")
+    here = pathlib.Path.cwd()
+    environment = {**os.environ, "EQUIMAP_TABLE": str(here / "j.csv"), "EQUIMAP_RESULTS": str(here / "sweep-j"),
+                   "EQUIMAP_MESHES": str(here)}
+    done = subprocess.run(["jube", "run", JOBS / "sweep.xml", "-o", here / "jube-runs", "-r", "--hide-animation"], env=environment,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120, check=False)
+    assert done.returncode == 0 and "not converged" in done.stdout and "no mesh" in done.stdout, done.stdout
+    assert lines_of("sweep-j/sweep.csv")[0]["name"] == "one"
+
+
+def main():
+    check_run()
+    check_change()
+    for kind, code in ((signal.SIGUSR1, 75), (signal.SIGINT, 75), (signal.SIGKILL, -signal.SIGKILL)):
+        check_stop(kind, code)
+    check_mistakes()
+    check_tables()
+    check_jube()
+    print("sweep: run, stopped, killed, gone on with, changed; wrong tables refused")
+
+
+if __name__ == "__main__":
+    os.environ["EQUIMAP"] = os.path.abspath(sys.argv[1])
+    for name in ("EQUIMAP_MESHES", "EQUIMAP_RESULTS", "EQUIMAP_MPIRUN"):
+        os.environ.pop(name, None)
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        main()
+        os.chdir("/")
