@@ -16,6 +16,7 @@ typedef enum {
   EQM_VERTEX_SIDE_X, /* along a horizontal side: the first coordinate */
   EQM_VERTEX_SIDE_Y, /* along a vertical side: the second coordinate */
   EQM_VERTEX_SPHERE, /* on the unit sphere: two degrees of freedom in the place's own frame */
+  EQM_VERTEX_ANGLES, /* on the unit sphere: its spherical coordinates, polar angle and azimuth */
   EQM_VERTEX_FIXED   /* nowhere else */
 } EqmVertexKind;
 
@@ -31,7 +32,7 @@ typedef enum {
 typedef struct {
   PetscReal *x;     /* dim * num_local */
   PetscReal *frame; /* of vertices on the sphere, 3 * num_local: the first tangent vector, the second is place x first;
-                       else NULL */
+                       of EQM_VERTEX_ANGLES the two angles; NULL where there are none such */
 } EqmPlace;
 
 typedef struct _p_EqmDomain *EqmDomain;
@@ -41,15 +42,16 @@ struct _p_EqmDomain {
   EqmMeasureKind measure; /* of image cells */
   PetscBool
       curved_image; /* image cells can fold without a change of sign of their measure: look at EQM_MEASURE_HALF_DET */
-  PetscInt dim;     /* coordinates of a place: 2 or 3 */
-  unsigned char *kind;            /* EqmVertexKind per local vertex */
-  PetscInt *dof_start;            /* per local vertex: place of its first degree of freedom in the global vector */
-  unsigned char *dof_count;       /* per local vertex */
-  PetscInt num_dofs, dof_first;   /* owned degrees of freedom, and the global number of the first */
-  EqmVertexKind kind_of_boundary; /* where boundary vertices live: the circle, or the sides of the square */
-  PetscReal target_measure;       /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
-  PetscReal boundary_length;      /* of the target: 2 pi, 4 */
-  PetscReal corner_arc[4];        /* square: arc lengths of the corners */
+  PetscBool spherical_coordinates; /* vertices on the sphere move by their angles */
+  PetscInt dim;                    /* coordinates of a place: 2 or 3 */
+  unsigned char *kind;             /* EqmVertexKind per local vertex */
+  PetscInt *dof_start;             /* per local vertex: place of its first degree of freedom in the global vector */
+  unsigned char *dof_count;        /* per local vertex */
+  PetscInt num_dofs, dof_first;    /* owned degrees of freedom, and the global number of the first */
+  EqmVertexKind kind_of_boundary;  /* where boundary vertices live: the circle, or the sides of the square */
+  PetscReal target_measure;        /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
+  PetscReal boundary_length;       /* of the target: 2 pi, 4 */
+  PetscReal corner_arc[4];         /* square: arc lengths of the corners */
   PetscErrorCode (*place_boundary)(EqmDomain, EqmPlace *);
   PetscReal *arc_length; /* per local vertex: arc length along the boundary loop in [0, 1), -1 inside (disk, square) */
 };
@@ -66,6 +68,9 @@ PETSC_EXTERN PetscErrorCode EqmDomainCreateSphere(EqmMesh mesh, EqmDomain *domai
 /* The unit ball: boundary vertices on the sphere, the others free in space (003 section 3). The mesh must be a solid.
    Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateBall(EqmMesh mesh, EqmDomain *domain);
+/* Let the vertices on the sphere move by their spherical coordinates (003 (4), (5)): no isometry, but the coordinates
+   that 003 Algorithm 1 is written in. To be called before any place is made. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainTakeSphericalCoordinates(EqmDomain domain);
 PETSC_EXTERN PetscErrorCode EqmDomainDestroy(EqmDomain *domain);
 
 PETSC_EXTERN PetscErrorCode EqmPlaceCreate(EqmDomain domain, EqmPlace *place);

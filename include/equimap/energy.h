@@ -74,6 +74,18 @@ static inline void EqmCellEdge(PetscInt cell_size, PetscInt e, PetscInt *from, P
   *from = ends[cell_size == 4][e][0];
   *to = ends[cell_size == 4][e][1];
 }
+/* The Laplacian of one cell from its edges' weights. Not collective. */
+static inline void EqmCellLaplacian(PetscInt cell_size, const PetscReal *weight, PetscReal entry[4][4])
+{
+  for (PetscInt k = 0; k < 16; k++) entry[k / 4][k % 4] = 0.;
+  for (PetscInt e = 0; e < EqmCellEdges(cell_size); e++) {
+    PetscInt a, b;
+    EqmCellEdge(cell_size, e, &a, &b);
+    entry[a][a] += weight[e];
+    entry[b][b] += weight[e];
+    entry[a][b] = entry[b][a] = -weight[e];
+  }
+}
 PETSC_EXTERN PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place,
                                                 PetscReal *weights);
 /* y = L x for `width` components; x per local vertex, y per owned vertex. Not collective. */

@@ -17,6 +17,7 @@ static const CommandRow commands[] = {
     {"square", EqmCommandMap, "MESH -o OUT", "the same to the unit square"},
     {"sphere", EqmCommandMap, "MESH -o OUT", "area-preserving map of a closed genus-0 surface to the unit sphere"},
     {"conformal", EqmCommandMap, "MESH -o OUT", "angle-preserving map: closed surface to the unit sphere, disk-type to the unit disk"},
+    {"ball", EqmCommandMap, "MESH -o OUT", "volume-preserving map of a solid ball of tetrahedra to the unit ball"},
     {"register", EqmCommandRegister, "A B -o OUT", "measure-preserving correspondence between two surfaces or solids"},
     {"check", EqmCommandCheck, "MESH", "diagnose a mesh: what it is, what is wrong, what each command would say"},
     {"measure", EqmCommandMeasure, "MESH MAP", "distortion and folds of any map, also one made elsewhere"},

@@ -27,6 +27,9 @@ PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, Pet
     for (PetscInt k = 0; k < 3; k++) frame[k] = place->frame[3 * v + k];
     EqmCross(x, frame, frame + 3);
     return 2;
+  case EQM_VERTEX_ANGLES: /* no orthonormal frame, but what turns gradients into those by the angles (003 (7)) */
+    EqmFromAngles(place->frame + 3 * v, NULL, frame, frame + 3);
+    return 2;
   case EQM_VERTEX_FIXED:
     break;
   }
@@ -41,6 +44,7 @@ PetscErrorCode EqmDomainNumber(EqmDomain domain)
                                      [EQM_VERTEX_SIDE_X] = 1,
                                      [EQM_VERTEX_SIDE_Y] = 1,
                                      [EQM_VERTEX_SPHERE] = 2,
+                                     [EQM_VERTEX_ANGLES] = 2,
                                      [EQM_VERTEX_FIXED] = 0};
   const EqmMesh mesh = domain->mesh;
   PetscInt count = 0;
@@ -181,6 +185,9 @@ PetscErrorCode EqmDomainMove(EqmDomain domain, const EqmPlace *from, PetscReal t
       MoveOnCircle(x, t * move[0], y);
     } else if (domain->kind[v] == EQM_VERTEX_SPHERE) {
       MoveOnSphere(x, from->frame + 3 * v, t * move[0], t * move[1], y, to->frame + 3 * v);
+    } else if (domain->kind[v] == EQM_VERTEX_ANGLES) {
+      for (PetscInt k = 0; k < 2; k++) to->frame[3 * v + k] = from->frame[3 * v + k] + t * move[k];
+      EqmFromAngles(to->frame + 3 * v, y, NULL, NULL);
     } else {
       PetscReal frame[9];
       const PetscInt count = EqmDomainFrame(domain, from, v, frame);
@@ -205,6 +212,7 @@ PetscErrorCode EqmPlaceMakeFrames(EqmDomain domain, EqmPlace *place)
     const PetscReal *const x = place->x + 3 * v;
     PetscReal axis[3] = {0., 0., 0.}, b[3], length;
     PetscInt smallest = 0;
+    if (domain->kind[v] == EQM_VERTEX_ANGLES) EqmToAngles(x, place->frame + 3 * v);
     if (domain->kind[v] != EQM_VERTEX_SPHERE) continue;
     for (PetscInt k = 1; k < 3; k++) smallest = PetscAbsReal(x[k]) < PetscAbsReal(x[smallest]) ? k : smallest;
     axis[smallest] = 1.; /* the axis farthest from x */

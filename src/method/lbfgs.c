@@ -2,6 +2,9 @@
    domain carry steps and gradients along: the recursion is the Euclidean one on every domain. */
 #include "method/method.h"
 #include "method/pairs.h"
+#include "method/wolfe.h"
+
+static const char *const line_searches[] = {"armijo", "wolfe", "EqmLbfgsLineSearch", "EQM_SEARCH_", NULL};
 
 typedef struct {
   EqmMetric metric;
@@ -84,6 +87,19 @@ static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t,
   PetscFunctionReturn(0);
 }
 
+/* Frames go with the motion: the velocity keeps its coordinates along the whole geodesic. */
+static PetscErrorCode TryStep(void *context, PetscReal t, PetscReal *value, PetscReal *slope)
+{
+  const EqmSolver solver = context;
+  Lbfgs *const lb = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmDomainMove(solver->domain, &solver->place, t, lb->direction, &lb->trial));
+  PetscCall(solver->problem->objective->evaluate(solver, &lb->trial, lb->image, value, lb->trial_gradient));
+  PetscCall(VecDot(lb->trial_gradient, lb->direction, slope));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 {
   Lbfgs *const lb = solver->data;
@@ -100,7 +116,10 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   PetscCall(VecDot(lb->gradient, lb->direction, &slope));
   *outcome = EQM_STEP_STALLED;
   if (!(slope < 0.)) PetscFunctionReturn(0);
-  PetscCall(Backtrack(solver, slope, &t, &energy));
+  if ((int)solver->settings.lbfgs_line_search == EQM_SEARCH_WOLFE)
+    PetscCall(EqmWolfeSearch(TryStep, solver, solver->objective, slope, &t, &energy));
+  else
+    PetscCall(Backtrack(solver, slope, &t, &energy));
   if (t == 0.) PetscFunctionReturn(0);
   PetscCall(EqmPairsAdd(lb->pairs, t, lb->direction, lb->gradient, lb->trial_gradient));
   PetscCall(VecCopy(lb->trial_gradient, lb->gradient));
@@ -133,6 +152,8 @@ static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsOb
                                    "EqmSolverSetFromOptions", set->lbfgs_refresh, &set->lbfgs_refresh, NULL, 0));
   PetscCall(PetscOptionsBoundedInt("-lbfgs_memory", "lbfgs: how many steps are remembered", "EqmSolverSetFromOptions",
                                    set->lbfgs_memory, &set->lbfgs_memory, NULL, 1));
+  PetscCall(PetscOptionsEnum("-lbfgs_line_search", "lbfgs: when a step is long enough", "EqmSolverSetFromOptions",
+                             line_searches, set->lbfgs_line_search, &set->lbfgs_line_search, NULL));
   PetscFunctionReturn(0);
 }
 

@@ -10,6 +10,9 @@
 #include "method/checkpoint.h"
 #include "method/state.h"
 
+/* A penalty on folds of maps to the ball (src/unfold/hinge.c). */
+typedef struct _p_EqmHinge *EqmHinge;
+
 /* What a step came to. */
 typedef enum {
   EQM_STEP_TAKEN,
@@ -41,9 +44,14 @@ typedef struct {
   PetscInt ncg_refresh;
   PetscEnum ncg_beta; /* an EqmNcgBeta */
   PetscBool ncg_guard;
+  /* ball */
+  PetscBool anisotropic_scaling;
+  char boundary_method[32], boundary_start[32]; /* of the map of the surface to the sphere; empty: the sphere's own */
+  PetscInt boundary_max_it;                     /* -1: the method's own */
   /* lbfgs, rgd */
   PetscInt lbfgs_refresh, lbfgs_memory;
-  PetscEnum rgd_line_search; /* an EqmRgdLineSearch */
+  PetscEnum lbfgs_line_search; /* an EqmLbfgsLineSearch */
+  PetscEnum rgd_line_search;   /* an EqmRgdLineSearch */
   /* euler-explicit, euler-implicit, qiem */
   PetscReal flow_step, flow_tol;
   PetscBool flow_moebius;
@@ -81,6 +89,8 @@ struct _p_EqmSolver {
   PetscReal last_shown;                  /* seconds when the last row was printed */
   PetscInt rows_shown;                   /* num_history at that time */
   PetscInt64 unfolded_from, unfolded_to; /* folds before and after the last unfolding; 0, 0: none was needed */
+  EqmHinge hinge;                        /* ball: added to the energy while folds are mended; else NULL */
+  PetscInt64 boundary_folds;             /* ball: folded triangles in the boundary's first map */
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
   char linear_solver[EQM_LINEAR_TEXT]; /* what solves with the method's matrices */
@@ -88,7 +98,8 @@ struct _p_EqmSolver {
 };
 
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,
-    EqmMethodRiemann, EqmMethodQiem, EqmMethodEulerExplicit, EqmMethodEulerImplicit;
+    EqmMethodRiemann, EqmMethodQiem, EqmMethodEulerExplicit, EqmMethodEulerImplicit, EqmMethodNewton;
+typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
 PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 
 /* Refresh solver->image and solver->totals from solver->place. Collective. */
@@ -106,11 +117,14 @@ PETSC_INTERN PetscErrorCode EqmMonitorUnfolded(EqmSolver solver, const char *whe
 
 /* ---- scalar Laplacians on groups of vertices (src/start/dirichlet.c) */
 enum { EQM_GROUP_FIXED = -1 };
-/* Factor the Laplacian with the given weights (3 per local cell), restricted to groups: entries between vertices of
-   different groups are dropped, rows of fixed vertices are identities. `group` per local vertex; `mass` per local cell
-   or NULL goes to the diagonal. Collective. */
+/* Factor the Laplacian with the given weights (per local cell and edge), restricted to groups: entries between vertices
+   of different groups are dropped, rows of fixed vertices are identities. `group` per local vertex; `mass` per local
+   cell or NULL goes to the diagonal. Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group,
                                            const PetscReal *mass);
+/* The same with the diagonal multiplied. Collective. */
+PETSC_INTERN PetscErrorCode EqmGroupFactorScaled(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                                                 const PetscReal *mass, PetscReal diagonal_factor);
 /* Solve with the factored Laplacian; columns of num_owned each. Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *columns);
 /* Solve L z = 0 on the vertices that are not held, in `width` columns: z (per local vertex, `width` each) holds the
@@ -158,7 +172,14 @@ PETSC_INTERN PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt s
 /* Turn a map over that is mirrored for the most part. Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereOrient(EqmSolver solver);
 
+/* ---- first map to the ball (src/start/ball.c) */
+/* The boundary by the sphere's solver, the interior by 1 + `steps` volumetric stretch steps (003 section 4).
+ * Collective.
+ */
+PETSC_INTERN PetscErrorCode EqmBallStart(EqmSolver solver, PetscInt steps);
+
 /* ---- bijectivity repair (src/unfold) */
+PETSC_INTERN PetscErrorCode EqmBallUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after);
 PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after);
 
 /* The largest step in (0, 1] along a straight motion that keeps cells of positive area positive, with a margin: .9 of

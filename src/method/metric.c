@@ -1,14 +1,27 @@
 /* A Laplacian, of most objectives the stretch Laplacian, as a metric for gradients. In the plane M = blkdiag(L_II,
    L_BB) (000 section 3.2), degree of freedom by degree of freedom, angles and slides with the first coordinate. On the
    sphere the gradient is a field in space: each coordinate is solved with the Laplacian and a mass, and the result
-   projected back (docs/methods.md, Published methods). */
+   projected back (docs/methods.md, Published methods). In the ball L_V alone does not see what the
+   energy's Hessian does to single cells: half of the metric's inverse is an incomplete factor of the Gauss-Newton
+   matrix (docs/methods.md, Solids). */
 #include "method/method.h"
+#include "energy/kernel.h"
+#include "linalg/blockfactor.h"
+#include "unfold/hinge.h"
 
 struct _p_EqmMetric {
   PetscReal *weights, *mass, *columns, *ambient;
   signed char *group;
-  EqmPlace at; /* the map that the present factor belongs to */
+  EqmPlace at;                 /* the map that the present factor belongs to */
+  EqmBlockFactor gauss_newton; /* in the ball, with vertices in frames; else NULL */
+  Vec smoothed;
 };
+
+/* A vertex in spherical coordinates has no frame that a factor could turn with. */
+static PetscBool NeedsGaussNewton(EqmDomain domain)
+{
+  return (PetscBool)(domain->measure == EQM_MEASURE_VOLUME && !domain->spherical_coordinates);
+}
 
 PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
 {
@@ -18,13 +31,22 @@ PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&metric));
-  PetscCall(PetscMalloc5(3 * mesh->num_local_cells, &metric->weights, mesh->num_local_cells, &metric->mass,
-                         dim * mesh->num_owned, &metric->columns, dim * mesh->num_local, &metric->ambient,
-                         mesh->num_local, &metric->group));
+  PetscCall(PetscMalloc5(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &metric->weights, mesh->num_local_cells,
+                         &metric->mass, dim * mesh->num_owned, &metric->columns, dim * mesh->num_local,
+                         &metric->ambient, mesh->num_local, &metric->group));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     metric->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
   }
   PetscCall(EqmPlaceCreate(solver->domain, &metric->at));
+  if (NeedsGaussNewton(solver->domain)) {
+    const EqmUnknowns unknowns = {.num_owned = solver->domain->num_dofs,
+                                  .first = solver->domain->dof_first,
+                                  .start = solver->domain->dof_start,
+                                  .count = solver->domain->dof_count};
+    PetscCall(EqmBlockFactorCreate(mesh, &unknowns, &metric->gauss_newton));
+    PetscCall(EqmDomainCreateVec(solver->domain, &metric->smoothed));
+    PetscCall(PetscArrayzero(metric->group, mesh->num_local)); /* boundary and interior together */
+  }
   *out = metric;
   PetscFunctionReturn(0);
 }
@@ -35,8 +57,47 @@ PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
   if (!*metric) PetscFunctionReturn(0);
   PetscCall(EqmPlaceDestroy(&(*metric)->at));
   PetscCall(PetscFree5((*metric)->weights, (*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
+  PetscCall(EqmBlockFactorDestroy(&(*metric)->gauss_newton));
+  PetscCall(VecDestroy(&(*metric)->smoothed));
   PetscCall(PetscFree(*metric));
   PetscFunctionReturn(0);
+}
+
+typedef struct {
+  EqmSolver solver;
+  const PetscReal *weights; /* of L_V */
+} GaussNewton;
+
+/* Half of the energy's Hessian times A without the curvature of the cells, da da^T / w, and a twentieth of L_V in each
+   coordinate, which keeps it definite. */
+static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
+{
+  const GaussNewton *const gn = context;
+  const EqmDomain domain = gn->solver->domain;
+  const PetscInt *const v = domain->mesh->cells + 4 * cell;
+  const PetscReal *const x = gn->solver->place.x, *const p[] = {x + 3 * v[0], x + 3 * v[1], x + 3 * v[2], x + 3 * v[3]};
+  PetscReal gradient[12], frame[4][9], laplacian[4][4], rate[12];
+  const PetscReal weight = domain->mesh->weight[cell];
+  const PetscReal stiffness = (1. + EqmHingeStiffness(gn->solver->hinge, weight, gn->solver->image[cell])) / weight;
+  PetscInt corner[12], number[12], n = 0;
+
+  EqmVolumeGradient(p, gradient);
+  EqmCellLaplacian(4, gn->weights + 6 * cell, laplacian);
+  for (PetscInt a = 0; a < 4; a++) {
+    const PetscInt count = EqmDomainFrame(domain, &gn->solver->place, v[a], frame[a]);
+    for (PetscInt k = 0; k < count; k++, n++) {
+      corner[n] = a;
+      number[n] = k;
+      rate[n] = EqmDot3(gradient + 3 * a, frame[a] + 3 * k);
+    }
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscInt a = corner[i], b = corner[j];
+      matrix[n * i + j] = rate[i] * rate[j] * stiffness +
+                          .05 * laplacian[a][b] * EqmDot3(frame[a] + 3 * number[i], frame[b] + 3 * number[j]);
+    }
+  }
 }
 
 /* Factor what belongs to the present map. */
@@ -46,7 +107,12 @@ static PetscErrorCode Factor(EqmSolver solver, EqmMetric metric)
 
   PetscFunctionBegin;
   PetscCall(solver->problem->objective->metric(solver, metric->weights, metric->mass, &with_mass));
-  PetscCall(EqmGroupFactor(solver, metric->weights, metric->group, with_mass ? metric->mass : NULL));
+  if (metric->gauss_newton) {
+    GaussNewton gn = {solver, metric->weights};
+    PetscCall(EqmBlockFactorCompute(metric->gauss_newton, CellGaussNewton, &gn));
+  }
+  PetscCall(EqmGroupFactorScaled(solver, metric->weights, metric->group, with_mass ? metric->mass : NULL,
+                                 metric->gauss_newton ? 1.01 : 1.));
   PetscFunctionReturn(0);
 }
 
@@ -96,12 +162,12 @@ static PetscErrorCode ApplyByDof(EqmSolver solver, EqmMetric metric, Vec g, Vec 
   PetscFunctionBegin;
   PetscCall(VecGetArrayRead(g, &from));
   for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt k = 0; k < 2; k++) {
+    for (PetscInt k = 0; k < domain->dim; k++) {
       metric->columns[k * n + v] = k < domain->dof_count[v] ? from[domain->dof_start[v] - domain->dof_first + k] : 0.;
     }
   }
   PetscCall(VecRestoreArrayRead(g, &from));
-  PetscCall(EqmGroupSolve(solver, 2, metric->columns));
+  PetscCall(EqmGroupSolve(solver, domain->dim, metric->columns));
   PetscCall(VecGetArrayWrite(h, &to));
   for (PetscInt v = 0; v < n; v++) {
     for (PetscInt k = 0; k < domain->dof_count[v]; k++)
@@ -111,10 +177,30 @@ static PetscErrorCode ApplyByDof(EqmSolver solver, EqmMetric metric, Vec g, Vec 
   PetscFunctionReturn(0);
 }
 
+/* h = 1/2 P1 g + 1/3 P2 g: P1 the incomplete factor, P2 L_V with its diagonal raised, both for A/2 times the Hessian.
+ */
+static PetscErrorCode ApplyCombined(EqmSolver solver, EqmMetric metric, Vec g, Vec h)
+{
+  const PetscScalar *from;
+  PetscScalar *to;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(g, &from));
+  PetscCall(VecGetArrayWrite(metric->smoothed, &to));
+  PetscCall(EqmBlockFactorSolve(metric->gauss_newton, from, to));
+  PetscCall(VecRestoreArrayWrite(metric->smoothed, &to));
+  PetscCall(VecRestoreArrayRead(g, &from));
+  PetscCall(ApplyInSpace(solver, metric, g, h));
+  PetscCall(VecAXPBY(h, .5, 1. / 3., metric->smoothed));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmMetricApply(EqmSolver solver, EqmMetric metric, Vec g, Vec h)
 {
   PetscFunctionBegin;
-  if (solver->domain->curved_image)
+  if (metric->gauss_newton)
+    PetscCall(ApplyCombined(solver, metric, g, h));
+  else if (solver->domain->curved_image)
     PetscCall(ApplyInSpace(solver, metric, g, h));
   else
     PetscCall(ApplyByDof(solver, metric, g, h));

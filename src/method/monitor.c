@@ -100,8 +100,8 @@ PetscErrorCode EqmMonitorUnfolded(EqmSolver solver, const char *when)
 {
   PetscFunctionBegin;
   if (solver->settings.quiet) PetscFunctionReturn(0);
-  PetscCall(PetscPrintf(solver->comm,
-                        "unfolding %s: %" PetscInt64_FMT " folded triangles, %" PetscInt64_FMT " afterwards\n", when,
-                        solver->unfolded_from, solver->unfolded_to));
+  PetscCall(PetscPrintf(solver->comm, "unfolding %s: %" PetscInt64_FMT " folded %s, %" PetscInt64_FMT " afterwards\n",
+                        when, solver->unfolded_from, solver->mesh->cell_size == 4 ? "tetrahedra" : "triangles",
+                        solver->unfolded_to));
   PetscFunctionReturn(0);
 }

@@ -1,11 +1,14 @@
-/* The objectives of the area-preserving maps. */
+/* The objectives of the area- and volume-preserving maps. */
 #include "method/method.h"
+#include "unfold/hinge.h"
 
+/* With the penalty on folds, while there is one. */
 static PetscErrorCode Evaluate(EqmSolver solver, const EqmPlace *place, PetscReal *image, PetscReal *value,
                                Vec gradient)
 {
   PetscFunctionBegin;
   PetscCall(EqmAuthalicEnergy(solver->domain, place, image, value, gradient));
+  if (solver->hinge) PetscCall(EqmHingeAdd(solver, solver->hinge, place, image, value, gradient));
   PetscFunctionReturn(0);
 }
 

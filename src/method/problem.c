@@ -25,6 +25,14 @@ static PetscErrorCode CreateSphere(EqmSolver solver, EqmDomain *domain)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CreateBall(EqmSolver solver, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmDomainCreateBall(solver->mesh, domain));
+  if (solver->method == &EqmMethodNcg) PetscCall(EqmDomainTakeSphericalCoordinates(*domain));
+  PetscFunctionReturn(0);
+}
+
 /* ---- options of one problem only */
 static PetscErrorCode AskCorners(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
 {
@@ -57,6 +65,28 @@ static PetscErrorCode AskConformal(EqmSolver solver, PetscOptionItems *PetscOpti
   PetscFunctionBegin;
   solver->settings.lbfgs_memory = 8; /* the method's own options ask next and show this as their default */
   PetscCall(AskCenter(solver, PetscOptionsObject));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AskBall(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  EqmSettings *const set = &solver->settings;
+
+  PetscFunctionBegin;
+  set->lbfgs_memory = 20; /* the methods' own options ask next and show these as their defaults */
+  set->lbfgs_line_search = (PetscEnum)EQM_SEARCH_WOLFE;
+  PetscCall(PetscOptionsBool("-anisotropic_scaling",
+                             "start: turn and scale the solid to fill a cube, axis by axis, before its first map",
+                             "EqmSolverSetFromOptions", set->anisotropic_scaling, &set->anisotropic_scaling, NULL));
+  PetscCall(PetscOptionsString("-boundary_method", "start: the method that maps the surface to the sphere",
+                               "EqmSolverSetFromOptions", set->boundary_method, set->boundary_method,
+                               sizeof(set->boundary_method), NULL));
+  PetscCall(PetscOptionsString("-boundary_start", "start: the first map of the surface to the sphere",
+                               "EqmSolverSetFromOptions", set->boundary_start, set->boundary_start,
+                               sizeof(set->boundary_start), NULL));
+  PetscCall(PetscOptionsInt("-boundary_max_it",
+                            "start: at most so many iterations for the surface (-1: the method's own)",
+                            "EqmSolverSetFromOptions", set->boundary_max_it, &set->boundary_max_it, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -124,6 +154,13 @@ static const EqmOffer conformal_on_sphere[] = {
     {&EqmMethodEulerImplicit, "gauss", 500, 0., 0., 0.},
 };
 
+static const EqmOffer in_ball[] = {
+    {&EqmMethodLbfgs, "fixed-point", 500, 1e-5, 0., 0.},
+    {&EqmMethodFixedPoint, "harmonic", 500, 1e-6, 0., 0.},
+    {&EqmMethodNcg, "fixed-point", 500, 1e-6, 0., 0.},
+    {&EqmMethodNewton, "fixed-point", 100, 1e-9, 0., 0.},
+};
+
 #define OFFERS(list) .offers = (list), .num_offers = sizeof(list) / sizeof((list)[0])
 
 /* Ratios off by half, root mean square: that is no map of equal areas. */
@@ -177,6 +214,16 @@ static const EqmProblem problems[] = {
      .finish = EqmConformalFinish,
      .starts = EQM_STARTS_SPHERE,
      OFFERS(conformal_on_sphere)},
+    {.target = "ball",
+     .place = "ball",
+     .options = AskBall,
+     .create_domain = CreateBall,
+     .objective = &EqmObjectiveAuthalic,
+     .sum = EqmSumMeasures,
+     .unfold = EqmBallUnfold,
+     .starts = EQM_STARTS_BALL,
+     .poor_energy = off_by_half,
+     OFFERS(in_ball)},
 };
 enum { NUM_PROBLEMS = sizeof(problems) / sizeof(problems[0]) };
 

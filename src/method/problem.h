@@ -15,7 +15,7 @@ typedef struct {
 } EqmOffer;
 
 /* Which first maps there are to choose from. */
-typedef enum { EQM_STARTS_PLANE, EQM_STARTS_SPHERE } EqmStartFamily;
+typedef enum { EQM_STARTS_PLANE, EQM_STARTS_SPHERE, EQM_STARTS_BALL } EqmStartFamily;
 
 typedef struct {
   const char *target;                            /* the command; several rows may share it, told apart by the mesh */

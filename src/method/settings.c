@@ -15,6 +15,8 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
                             .stagnation = 5,
                             .checkpoint_every = -1,
                             .ncg_guard = PETSC_TRUE,
+                            .anisotropic_scaling = PETSC_TRUE,
+                            .boundary_max_it = -1,
                             .lbfgs_refresh = 25,
                             .lbfgs_memory = 10,
                             .flow_tol = 1e-9,

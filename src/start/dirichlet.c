@@ -45,20 +45,28 @@ static PetscErrorCode MakeScalar(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group,
-                              const PetscReal *mass)
+PetscErrorCode EqmGroupFactorScaled(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                                    const PetscReal *mass, PetscReal diagonal_factor)
 {
   GroupMatrix matrix = {solver->mesh, weights, group, mass};
   PetscBool success;
 
   PetscFunctionBegin;
   PetscCall(MakeScalar(solver));
-  PetscCall(EqmLinearFactor(solver->scalar, CellLaplacian, &matrix, 1., &success));
+  PetscCall(EqmLinearFactor(solver->scalar, CellLaplacian, &matrix, diagonal_factor, &success));
   if (!success) {
     EqmFail(solver->comm, EQM_ERR_MESH,
             "a Laplacian of this mesh is not positive definite (very obtuse or degenerate cells); remesh, or start "
             "with -start tutte");
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                              const PetscReal *mass)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmGroupFactorScaled(solver, weights, group, mass, 1.));
   PetscFunctionReturn(0);
 }
 

@@ -20,6 +20,7 @@ static PetscErrorCode StartDescending(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartConformal(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartGauss(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartTutteOnSphere(EqmSolver, const StartRow *, PetscInt);
+static PetscErrorCode StartInBall(EqmSolver, const StartRow *, PetscInt);
 
 static const StartRow starts[] = {
     {"harmonic", "boundary by arc length, interior by cotangent weights", EQM_STARTS_PLANE, StartInPlane,
@@ -48,6 +49,10 @@ static const StartRow starts[] = {
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 20},
     {"tutte", "two hemispheres, each by equal weights, and unfolding (004 section 5.1)", EQM_STARTS_SPHERE,
      StartTutteOnSphere, EQM_LAPLACIAN_UNIFORM, PETSC_FALSE, 0},
+    {"harmonic", "boundary area-preserving on the sphere, interior harmonic", EQM_STARTS_BALL, StartInBall,
+     EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
+    {"fixed-point", "harmonic, then fixed-point steps with the boundary held (003 section 4)", EQM_STARTS_BALL,
+     StartInBall, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 15},
 };
 enum { NUM_STARTS = sizeof(starts) / sizeof(starts[0]) };
 
@@ -278,6 +283,13 @@ static PetscErrorCode StartConformal(EqmSolver solver, const StartRow *row, Pets
   PetscFunctionBegin;
   PetscCall(EqmSphereLinear(solver));
   PetscCall(CenterStart(solver));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartInBall(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmBallStart(solver, steps));
   PetscFunctionReturn(0);
 }
 

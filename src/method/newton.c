@@ -1,0 +1,190 @@
+/* Newton's method on the normalised isovolumetric energy, damped after Levenberg and Marquardt in the metric of the
+   stretch Laplacian. The matrix is the exact Hessian of sum a^2/(w A) - A but for the two rank-one terms by which the
+   total volume couples everything; on the ball the total hardly changes. */
+#include "method/method.h"
+#include "energy/curvature.h"
+
+enum { MOST_DAMPINGS = 40 };
+/* The damping's metric has constants and rotations in its null space: a little of its diagonal keeps it definite. */
+static const PetscReal diagonal_share = 1e-8;
+
+typedef struct {
+  EqmLinear linear;
+  PetscReal mu;
+  PetscReal *slope, *weights; /* dE/da per local cell; the stretch Laplacian */
+  PetscReal *image, *velocity;
+  EqmPlace trial;
+  Vec gradient, trial_gradient, step;
+} Newton;
+
+static PetscErrorCode SetUp(EqmSolver solver)
+{
+  const EqmMesh mesh = solver->mesh;
+  const EqmDomain domain = solver->domain;
+  const EqmUnknowns unknowns = {.num_owned = domain->num_dofs,
+                                .first = domain->dof_first,
+                                .start = domain->dof_start,
+                                .count = domain->dof_count};
+  Newton *newton;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&newton));
+  solver->data = newton;
+  newton->mu = 1e-2;
+  PetscCall(EqmLinearDestroy(&solver->scalar)); /* the start's, of no more use */
+  PetscCall(PetscFree(solver->scalar_count));
+  PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, PETSC_TRUE, &newton->linear));
+  PetscCall(PetscMalloc4(mesh->num_local_cells, &newton->slope, EqmCellEdges(mesh->cell_size) * mesh->num_local_cells,
+                         &newton->weights, mesh->num_local_cells, &newton->image, domain->dim * mesh->num_local,
+                         &newton->velocity));
+  PetscCall(EqmPlaceCreate(domain, &newton->trial));
+  PetscCall(EqmDomainCreateVec(domain, &newton->gradient));
+  PetscCall(VecDuplicate(newton->gradient, &newton->trial_gradient));
+  PetscCall(VecDuplicate(newton->gradient, &newton->step));
+  PetscCall(EqmAuthalicEnergy(domain, &solver->place, solver->image, &solver->objective, newton->gradient));
+  PetscCall(VecNorm(newton->gradient, NORM_2, &solver->gradient_norm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(EqmSolver solver)
+{
+  Newton *const newton = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLinearDestroy(&newton->linear));
+  PetscCall(PetscFree4(newton->slope, newton->weights, newton->image, newton->velocity));
+  PetscCall(EqmPlaceDestroy(&newton->trial));
+  PetscCall(VecDestroy(&newton->gradient));
+  PetscCall(VecDestroy(&newton->trial_gradient));
+  PetscCall(VecDestroy(&newton->step));
+  PetscCall(PetscFree(solver->data));
+  PetscFunctionReturn(0);
+}
+
+static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
+{
+  const EqmSolver solver = context;
+  const EqmDomain domain = solver->domain;
+  const EqmMesh mesh = solver->mesh;
+  const Newton *const newton = solver->data;
+  const PetscReal scale = 2. / (mesh->weight[cell] * solver->totals.total);
+  PetscReal frame[4][9], laplacian[4][4];
+  PetscInt first[4] = {0};
+  EqmCellDerivatives d;
+
+  EqmCellDifferentiate(domain, &solver->place, cell, &d);
+  EqmCellLaplacian(mesh->cell_size, newton->weights + EqmCellEdges(mesh->cell_size) * cell, laplacian);
+  for (PetscInt a = 0, sum = 0; a < mesh->cell_size; a++) {
+    first[a] = sum;
+    sum += EqmDomainFrame(domain, &solver->place, mesh->cells[mesh->cell_size * cell + a], frame[a]);
+  }
+  for (PetscInt i = 0; i < d.count; i++) {
+    for (PetscInt j = 0; j < d.count; j++) {
+      const PetscInt a = d.corner[i], b = d.corner[j];
+      const PetscReal *const u = frame[a] + domain->dim * (i - first[a]), *const v =
+                                                                              frame[b] + domain->dim * (j - first[b]);
+      PetscReal dot = 0.;
+      for (PetscInt k = 0; k < domain->dim; k++) dot += u[k] * v[k];
+      matrix[d.count * i + j] = scale * d.first[i] * d.first[j] + newton->slope[cell] * d.second[i][j] +
+                                newton->mu * dot * laplacian[a][b] * (i == j ? 1. + diagonal_share : 1.);
+    }
+  }
+}
+
+/* Slopes and metric at the present map. */
+static PetscErrorCode Linearise(EqmSolver solver)
+{
+  Newton *const newton = solver->data;
+  const EqmImageTotals *const totals = &solver->totals;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) {
+    newton->slope[c] =
+        2. * (solver->image[c] / (solver->mesh->weight[c] * totals->total) - 1.) - totals->energy / totals->total;
+  }
+  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, newton->weights));
+  PetscFunctionReturn(0);
+}
+
+/* (H + mu M) p = -g; what the quadratic model without the damping promises. */
+static PetscErrorCode SolveStep(EqmSolver solver, PetscReal *promised)
+{
+  Newton *const newton = solver->data;
+  PetscReal slope, metric;
+  PetscScalar *p;
+
+  PetscFunctionBegin;
+  PetscCall(VecCopy(newton->gradient, newton->step));
+  PetscCall(VecScale(newton->step, -1.));
+  PetscCall(VecGetArray(newton->step, &p));
+  PetscCall(EqmLinearSolve(newton->linear, 1, p, p));
+  PetscCall(VecRestoreArray(newton->step, &p));
+  PetscCall(VecDot(newton->gradient, newton->step, &slope));
+  PetscCall(EqmDomainExpand(solver->domain, &solver->place, newton->step, newton->velocity));
+  PetscCall(EqmLaplacianEnergy(solver->mesh, newton->weights, solver->domain->dim, newton->velocity, &metric));
+  *promised = -.5 * slope + newton->mu * metric; /* the metric's energy is half p^T M p */
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AcceptTrial(EqmSolver solver, PetscReal energy, PetscReal gain)
+{
+  Newton *const newton = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCopy(solver->domain, &newton->trial, &solver->place));
+  PetscCall(PetscArraycpy(solver->image, newton->image, solver->mesh->num_local_cells));
+  PetscCall(EqmSolverSum(solver));
+  PetscCall(VecCopy(newton->trial_gradient, newton->gradient));
+  PetscCall(VecNorm(newton->gradient, NORM_2, &solver->gradient_norm));
+  solver->objective = energy;
+  solver->step_length = 1.;
+  if (gain > .75) newton->mu = PetscMax(.25 * newton->mu, 1e-12);
+  if (gain < .25) newton->mu *= 3.;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+{
+  Newton *const newton = solver->data;
+  PetscReal promised, energy;
+
+  PetscFunctionBegin;
+  PetscCall(Linearise(solver));
+  *outcome = EQM_STEP_STALLED;
+  for (PetscInt damping = 0; damping < MOST_DAMPINGS; damping++, newton->mu = PetscMax(4. * newton->mu, 1e-10)) {
+    PetscBool success;
+    PetscCall(EqmLinearFactor(newton->linear, CellMatrix, solver, 1., &success));
+    if (!success) continue;
+    PetscCall(SolveStep(solver, &promised));
+    if (promised <= 1e-13 * solver->objective) { /* what is left is rounding */
+      *outcome = EQM_STEP_CONVERGED;
+      PetscFunctionReturn(0);
+    }
+    PetscCall(EqmDomainMove(solver->domain, &solver->place, 1., newton->step, &newton->trial));
+    PetscCall(EqmAuthalicEnergy(solver->domain, &newton->trial, newton->image, &energy, newton->trial_gradient));
+    const PetscReal gain = (solver->objective - energy) / promised;
+    if (!(gain > 1e-4)) continue;
+    PetscCall(AcceptTrial(solver, energy, gain));
+    *outcome = EQM_STEP_TAKEN;
+    PetscFunctionReturn(0);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  Newton *const newton = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStateReal(state, "mu", &newton->mu));
+  PetscFunctionReturn(0);
+}
+
+const EqmMethod EqmMethodNewton = {
+    .name = "newton",
+    .purpose = "damped Newton steps with the exact Hessian: a coupled factorisation each, for up to 100,000 vertices",
+    .set_up = SetUp,
+    .step = Step,
+    .state = State,
+    .destroy = Destroy,
+};
