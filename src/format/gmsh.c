@@ -231,6 +231,23 @@ PetscErrorCode EqmParseGmsh(const char *bytes, size_t length, EqmSerialMesh *mes
   return EqmBuilderFinish(&gmsh.builder, code, mesh);
 }
 
+/* A field as $NodeData or $ElementData. Gmsh knows 1, 3 and 9 numbers a place; what is missing is zero. */
+static void PrintField(EqmAtomicFile *file, const EqmField *field, PetscInt count)
+{
+  const char *const section = field->on_cells ? "ElementData" : "NodeData";
+  const PetscInt width = field->width == 1 ? 1 : field->width <= 3 ? 3 : 9;
+
+  if (field->width > 9) return;
+  EqmAtomicPrint(file, "$%s\n1\n\"%s\"\n1\n0\n3\n0\n%d\n%lld\n", section, field->name, (int)width, (long long)count);
+  for (PetscInt i = 0; i < count; ++i) {
+    EqmAtomicPrint(file, "%lld ", (long long)i + 1);
+    EqmAtomicPrintReals(file, field->width, field->values + (size_t)field->width * (size_t)i, ' ');
+    for (PetscInt k = field->width; k < width; ++k) EqmAtomicWrite(file, " 0", 2);
+    EqmAtomicWrite(file, "\n", 1);
+  }
+  EqmAtomicPrint(file, "$End%s\n", section);
+}
+
 /* EqmWriteGmsh - write an ASCII file of version 2.2, which every program reads. See EqmWriter. */
 PetscErrorCode EqmWriteGmsh(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
                             char *error, size_t error_length)
@@ -251,5 +268,8 @@ PetscErrorCode EqmWriteGmsh(EqmAtomicFile *file, const EqmSerialMesh *mesh, cons
     EqmAtomicWrite(file, "\n", 1);
   }
   EqmAtomicPrint(file, "$EndElements\n");
+  for (PetscInt f = 0; f < num_fields; ++f) {
+    PrintField(file, &fields[f], fields[f].on_cells ? mesh->num_cells : mesh->num_vertices);
+  }
   return 0;
 }

@@ -184,7 +184,7 @@ static void TestFields(void)
   PetscInt cells[12];
   EqmSerialMesh mesh = {5, 4, 3, vertices, cells}, back = {0};
   char error[EQM_MESSAGE_MAX] = "", *bytes;
-  static const char *const names[] = {"f.vtu", "f.ply", "f.gii", "f.obj", "f.vtk", "f.mesh"};
+  static const char *const names[] = {"f.vtu", "f.ply", "f.gii", "f.obj", "f.vtk", "f.mesh", "f.msh"};
   size_t length;
   int rank;
 
@@ -192,7 +192,7 @@ static void TestFields(void)
   if (rank) return;
   for (int i = 0; i < 15; ++i) vertices[i] = sample_vertices[i];
   for (int i = 0; i < 12; ++i) cells[i] = sample_triangles[i];
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 7; ++i) {
     PetscErrorCode code = EqmFormatWriteSerial(PathOf(names[i]), &mesh, fields, 2, error, sizeof(error));
 
     CHECK(!code, "%s with fields: %s", names[i], error);
