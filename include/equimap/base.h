@@ -85,8 +85,9 @@ PETSC_EXTERN PetscErrorCode EqmEventEnd(EqmLedger ledger, EqmEvent event);
 PETSC_EXTERN PetscErrorCode EqmLedgerGetWork(EqmLedger ledger, EqmWork **work);
 PETSC_EXTERN PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PHASES],
                                                 PetscReal events[EQM_NUM_EVENTS], PetscReal *total);
-PETSC_EXTERN PetscErrorCode EqmLedgerAddEarlier(EqmLedger ledger, const PetscReal phases[EQM_NUM_PHASES],
-                                                const PetscReal events[EQM_NUM_EVENTS], PetscReal total);
+PETSC_EXTERN PetscErrorCode EqmLedgerContinue(EqmLedger ledger, const PetscReal phases[EQM_NUM_PHASES],
+                                              const PetscReal events[EQM_NUM_EVENTS], PetscReal total);
+PETSC_EXTERN PetscErrorCode EqmLedgerGetEarlier(EqmLedger ledger, PetscReal *seconds);
 PETSC_EXTERN PetscErrorCode EqmGetPeakMemory(MPI_Comm comm, PetscInt64 *max_per_rank, PetscInt64 *total);
 
 #endif

@@ -65,6 +65,9 @@ PETSC_EXTERN PetscErrorCode EqmRegistrationRead(EqmRegistration registration, co
 /* Map what is no result yet, move landmarks together, compose, measure. The map's status tells how it went.
    Collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationSolve(EqmRegistration registration);
+/* How it went. EQM_STATUS_STOPPED: on request, with a checkpoint, and there is no map yet. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationGetStatus(EqmRegistration registration, EqmStatus *status,
+                                                     const char **message);
 /* phi as a map of A: /map/coordinates are the points of B, three coordinates each (with B the target: of the target).
    Referenced, not to be destroyed. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationGetMap(EqmRegistration registration, EqmMap *map);

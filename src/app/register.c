@@ -1,5 +1,6 @@
 /* equimap register A B -o OUT: a measure-preserving correspondence between two surfaces or two solids. */
 #include "app.h"
+#include "base/stop.h"
 #include <omp.h>
 
 typedef struct {
@@ -79,6 +80,7 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
   EqmLedger ledger;
   EqmRegistration registration;
   EqmMap map;
+  const char *message;
 
   PetscFunctionBegin;
   if (line->help) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", manual));
@@ -87,15 +89,21 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckArguments(line, &options));
+  EqmStopCatchSignals();
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   PetscCall(EqmRegistrationCreate(PETSC_COMM_WORLD, ledger, &registration));
   PetscCall(EqmRegistrationSetFromOptions(registration));
   PetscCall(EqmRegistrationRead(registration, line->argument[0], line->argument[1]));
   PetscCall(EqmRegistrationSolve(registration));
-  PetscCall(EqmRegistrationGetMap(registration, &map));
-  PetscCall(Write(&options, ledger, map));
-  PetscCall(EqmRegistrationView(registration));
-  *status = map->status;
+  PetscCall(EqmRegistrationGetStatus(registration, status, &message));
+  if (*status == EQM_STATUS_STOPPED) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n", EqmStatusName(*status), message));
+  } else {
+    PetscCall(EqmRegistrationGetMap(registration, &map));
+    PetscCall(Write(&options, ledger, map));
+    PetscCall(EqmRegistrationView(registration));
+    *status = map->status;
+  }
   PetscCall(EqmRegistrationDestroy(&registration));
   PetscCall(EqmLedgerDestroy(&ledger));
   PetscFunctionReturn(0);

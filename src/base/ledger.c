@@ -9,6 +9,7 @@ struct _p_EqmLedger {
   PetscLogEvent event[EQM_NUM_EVENTS];
   PetscLogDouble created, phase_begun[EQM_NUM_PHASES], event_begun[EQM_NUM_EVENTS];
   PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS];
+  PetscReal earlier_phases[EQM_NUM_PHASES], earlier_events[EQM_NUM_EVENTS], earlier; /* of the runs before this one */
 };
 
 static const char *const phase_names[EQM_NUM_PHASES] = {"Read",     "Diagnose",   "Distribute", "Start",
@@ -130,15 +131,26 @@ PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PH
   PetscFunctionReturn(0);
 }
 
-/* The run is the continuation of others, which took so long. Seconds of the kinds of work go to this rank's. Not
-   collective. */
-PetscErrorCode EqmLedgerAddEarlier(EqmLedger ledger, const PetscReal phases[EQM_NUM_PHASES],
-                                   const PetscReal events[EQM_NUM_EVENTS], PetscReal total)
+/* The run continues others, which took so long: clocks go on from there. May be called again when more is known of
+   them. Not collective. */
+PetscErrorCode EqmLedgerContinue(EqmLedger ledger, const PetscReal phases[EQM_NUM_PHASES],
+                                 const PetscReal events[EQM_NUM_EVENTS], PetscReal total)
 {
   PetscFunctionBegin;
-  for (int p = 0; p < EQM_NUM_PHASES; p++) ledger->phase_seconds[p] += phases[p];
-  for (int e = 0; e < EQM_NUM_EVENTS; e++) ledger->event_seconds[e] += events[e];
-  ledger->created -= total;
+  for (int p = 0; p < EQM_NUM_PHASES; p++) ledger->phase_seconds[p] += phases[p] - ledger->earlier_phases[p];
+  for (int e = 0; e < EQM_NUM_EVENTS; e++) ledger->event_seconds[e] += events[e] - ledger->earlier_events[e];
+  ledger->created -= total - ledger->earlier;
+  PetscCall(PetscArraycpy(ledger->earlier_phases, phases, EQM_NUM_PHASES));
+  PetscCall(PetscArraycpy(ledger->earlier_events, events, EQM_NUM_EVENTS));
+  ledger->earlier = total;
+  PetscFunctionReturn(0);
+}
+
+/* Seconds of the runs that this one continues. Not collective. */
+PetscErrorCode EqmLedgerGetEarlier(EqmLedger ledger, PetscReal *seconds)
+{
+  PetscFunctionBegin;
+  *seconds = ledger->earlier;
   PetscFunctionReturn(0);
 }
 

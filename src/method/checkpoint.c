@@ -82,6 +82,8 @@ static PetscErrorCode VisitProblem(EqmState state, EqmSolver solver)
   PetscCall(EqmStateSameText(state, "method", solver->method->name));
   PetscCall(EqmStateSameReal(state, "-balance", PetscMax(set->balance, 0.)));
   PetscCall(EqmStateSameText(state, "-corners", corners));
+  PetscCall(EqmStateSameInt(state, "the number of landmarks", solver->landmarks.num_total));
+  PetscCall(EqmStateSameReal(state, "the landmarks' weight", solver->landmarks.lambda));
   PetscFunctionReturn(0);
 }
 
@@ -96,8 +98,7 @@ static PetscErrorCode VisitSeconds(EqmState state, EqmSolver solver)
   PetscCall(EqmStateReals(state, "phase_seconds", EQM_NUM_PHASES, phases));
   PetscCall(EqmStateReals(state, "event_seconds", EQM_NUM_EVENTS, events));
   if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
-  PetscCall(EqmLedgerAddEarlier(solver->mesh->ledger, phases, events, total));
-  solver->checkpoints.earlier_seconds = total;
+  PetscCall(EqmLedgerContinue(solver->mesh->ledger, phases, events, total));
   PetscFunctionReturn(0);
 }
 
@@ -184,6 +185,33 @@ PetscErrorCode EqmCheckpointBegin(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Exists(EqmSolver solver, const char *file, PetscBool *exists)
+{
+  PetscFunctionBegin;
+  *exists = (PetscBool)(solver->mesh->rank == 0 && !access(file, F_OK));
+  PetscCallMPI(MPI_Bcast(exists, 1, MPIU_BOOL, 0, solver->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage)
+{
+  EqmSettings *const set = &solver->settings;
+  char number[32], previous[PETSC_MAX_PATH_LEN];
+  PetscBool there, before;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(number, sizeof(number), ".%" PetscInt_FMT, stage));
+  PetscCall(PetscStrlen(number, &solver->checkpoints.suffix));
+  if (set->checkpoint[0]) PetscCall(PetscStrlcat(set->checkpoint, number, sizeof(set->checkpoint)));
+  if (!set->restart[0]) PetscFunctionReturn(0);
+  PetscCall(PetscStrlcat(set->restart, number, sizeof(set->restart)));
+  PetscCall(EqmStatePreviousName(set->restart, previous, sizeof(previous)));
+  PetscCall(Exists(solver, set->restart, &there));
+  PetscCall(Exists(solver, previous, &before));
+  if (stage > 1 && !there && !before) set->restart[0] = '\0'; /* the run had not come so far */
+  PetscFunctionReturn(0);
+}
+
 /* Write one now; a failure is told the first time. */
 static PetscErrorCode Write(EqmSolver solver)
 {
@@ -246,14 +274,6 @@ PetscErrorCode EqmCheckpointEnd(EqmSolver solver)
 }
 
 /* ---- loading */
-
-static PetscErrorCode Exists(EqmSolver solver, const char *file, PetscBool *exists)
-{
-  PetscFunctionBegin;
-  *exists = (PetscBool)(solver->mesh->rank == 0 && !access(file, F_OK));
-  PetscCallMPI(MPI_Bcast(exists, 1, MPIU_BOOL, 0, solver->comm));
-  PetscFunctionReturn(0);
-}
 
 /* The newer of the two checkpoints that is sound. */
 static PetscErrorCode OpenNewest(EqmSolver solver, char *name, size_t length)
@@ -326,12 +346,14 @@ PetscErrorCode EqmCheckpointAskedToStop(EqmSolver solver, PetscBool *stop)
 {
   const EqmSettings *const set = &solver->settings;
   EqmStopReason reason;
-  PetscReal seconds;
+  PetscReal seconds, earlier;
+  size_t length;
 
   PetscFunctionBegin;
   PetscCall(EqmStopRequested(solver->comm, &solver->checkpoints.stop_file, &reason));
   PetscCall(EqmLedgerGetSeconds(solver->mesh->ledger, NULL, NULL, &seconds));
-  seconds -= solver->checkpoints.earlier_seconds;
+  PetscCall(EqmLedgerGetEarlier(solver->mesh->ledger, &earlier));
+  seconds -= earlier;
   *stop = PETSC_TRUE;
   if (reason != EQM_STOP_NONE) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by %s after iteration %" PetscInt_FMT,
@@ -348,5 +370,7 @@ PetscErrorCode EqmCheckpointAskedToStop(EqmSolver solver, PetscBool *stop)
   solver->status = EQM_STATUS_STOPPED;
   PetscCall(PetscStrlcat(solver->message, "; to go on: the same command with -restart ", sizeof(solver->message)));
   PetscCall(PetscStrlcat(solver->message, set->checkpoint, sizeof(solver->message)));
+  PetscCall(PetscStrlen(solver->message, &length));
+  solver->message[length - solver->checkpoints.suffix] = '\0';
   PetscFunctionReturn(0);
 }

@@ -8,16 +8,20 @@
 
 /* What a solver knows of its checkpoints. */
 typedef struct {
-  EqmState open;             /* the one that is being loaded, between map and method; else NULL */
-  EqmStopFile stop_file;     /* beside the checkpoint */
-  PetscReal earlier_seconds; /* that the runs before this one took */
-  PetscReal cost, last;      /* seconds that the last checkpoint took, and when it was written */
-  PetscInt written;          /* iteration of the last one that was written; -1: none */
-  PetscInt resumed;          /* iteration that this run began with */
-  PetscBool finished;        /* the method itself has ended: no step follows */
-  PetscBool failing;         /* the last one could not be written */
+  EqmState open;         /* the one that is being loaded, between map and method; else NULL */
+  EqmStopFile stop_file; /* beside the checkpoint */
+  PetscReal cost, last;  /* seconds that the last checkpoint took, and when it was written */
+  PetscInt written;      /* iteration of the last one that was written; -1: none */
+  PetscInt resumed;      /* iteration that this run began with */
+  size_t suffix;         /* length of what EqmSolverSetStage has put behind the user's name */
+  PetscBool finished;    /* the method itself has ended: no step follows */
+  PetscBool failing;     /* the last one could not be written */
 } EqmCheckpoints;
 
+/* The run is the `stage`-th minimisation of several, counted from 1, each with a checkpoint of its own: the names of
+   -checkpoint and -restart get .STAGE behind. A later stage whose checkpoint is not there begins anew. Call after
+   EqmSolverSetFromOptions. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage);
 /* Get ready: leftovers of killed runs are removed, a file STOP is watched for. Collective. */
 PETSC_INTERN PetscErrorCode EqmCheckpointBegin(EqmSolver solver);
 /* With -restart: find the newest checkpoint that is sound, and take map and history from it, in place of a start.

@@ -73,6 +73,17 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* The limit is that of the first map. */
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  Explicit *const e = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStateReal(state, "limit", &e->limit));
+  PetscCall(EqmFlowState(solver, state, &e->dt, &e->ended));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(EqmSolver solver)
 {
   Explicit *const e = solver->data;
@@ -115,5 +126,6 @@ const EqmMethod EqmMethodEulerExplicit = {
     .options = EqmFlowOptions,
     .set_up = SetUp,
     .step = Step,
+    .state = State,
     .destroy = Destroy,
 };

@@ -81,6 +81,15 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  Implicit *const s = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmFlowState(solver, state, &s->dt, &s->ended));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(EqmSolver solver)
 {
   Implicit *const s = solver->data;
@@ -173,5 +182,6 @@ const EqmMethod EqmMethodEulerImplicit = {
     .options = EqmFlowOptions,
     .set_up = SetUp,
     .step = Step,
+    .state = State,
     .destroy = Destroy,
 };

@@ -94,3 +94,12 @@ PetscErrorCode EqmFlowJudge(EqmSolver solver, PetscReal change, PetscBool *ended
   }
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode EqmFlowState(EqmSolver solver, EqmState state, PetscReal *time_step, PetscBool *ended)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmStateReal(state, "time_step", time_step));
+  PetscCall(EqmStateBool(state, "ended", ended));
+  if (EqmStateIsLoading(state) && *ended) PetscCall(EqmFlowJudge(solver, 0., ended)); /* says so again */
+  PetscFunctionReturn(0);
+}

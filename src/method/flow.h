@@ -18,6 +18,8 @@ PETSC_INTERN PetscErrorCode EqmFlowEnergy(EqmSolver solver, const EqmPlace *plac
 PETSC_INTERN PetscErrorCode EqmFlowAccept(EqmSolver solver, const EqmPlace *place, PetscReal time_step);
 /* The options -flow_*, which the three methods share. Collective. */
 PETSC_INTERN PetscErrorCode EqmFlowOptions(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+/* For the `state` of the three methods: the time step, and whether the method has come to its end. Collective. */
+PETSC_INTERN PetscErrorCode EqmFlowState(EqmSolver solver, EqmState state, PetscReal *time_step, PetscBool *ended);
 /* Has the energy changed by less than -flow_tol? Then the method has come to its end, says the message. Not collective.
  */
 PETSC_INTERN PetscErrorCode EqmFlowJudge(EqmSolver solver, PetscReal change, PetscBool *ended);

@@ -104,6 +104,33 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
   }
 }
 
+/* Phase I keeps its factor for as long as the time step stays: made anew when a run goes on. */
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  Qiem *const q = solver->data;
+  PetscInt *const counts[] = {&q->phase, &q->steps, &q->cuts, &q->shrinks, &q->restarts};
+  static const char *const names[] = {"phase", "steps", "cuts", "shrinks", "restarts"};
+  PetscReal dt;
+  PetscBool success = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  for (size_t k = 0; k < sizeof(counts) / sizeof(counts[0]); k++) PetscCall(EqmStateInt(state, names[k], counts[k]));
+  PetscCall(EqmStateReal(state, "first_time_step", &q->dt0));
+  PetscCall(EqmStateReal(state, "longest_time_step", &q->most_dt));
+  PetscCall(EqmStateReal(state, "energy", &q->energy));
+  PetscCall(EqmStateReal(state, "change", &q->change));
+  PetscCall(EqmStateReal(state, "factored_for", &q->factored));
+  PetscCall(EqmStatePlace(state, solver->domain, "start", &q->start));
+  PetscCall(EqmFlowState(solver, state, &q->dt, &q->ended));
+  if (!EqmStateIsLoading(state) || q->phase == 2 || q->factored == 0.) PetscFunctionReturn(0);
+  dt = q->dt;
+  q->dt = q->factored;
+  PetscCall(EqmGeneralFactor(q->matrix, CellMatrix, solver, 1., &success));
+  q->dt = dt;
+  if (!success) q->factored = 0.;
+  PetscFunctionReturn(0);
+}
+
 /* One solve with the present time step into the trial; the energy is infinite where the matrix is singular. */
 static PetscErrorCode Attempt(EqmSolver solver, PetscReal *energy)
 {
@@ -276,5 +303,6 @@ const EqmMethod EqmMethodQiem = {
     .options = Options,
     .set_up = SetUp,
     .step = Step,
+    .state = State,
     .destroy = Destroy,
 };

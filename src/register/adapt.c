@@ -38,7 +38,7 @@ static PetscErrorCode MinimiseOnce(EqmRegistration r, EqmSide *side, const Petsc
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmSolverSetFirstMap(solver, r->dim, side->x));
   PetscCall(EqmSolverSetLandmarks(solver, r->landmarks.num, r->dim, vertices, goal, weight, r->set.tolerance));
-  PetscCall(EqmSolverSolve(solver));
+  PetscCall(EqmRegistrationMinimise(r, solver));
   PetscCall(EqmSolverLandmarksReached(solver, reached));
   PetscCall(PetscArraycpy(side->x, solver->place.x, r->dim * side->mesh->num_local));
   PetscCall(EqmMapDestroy(&side->map));
@@ -54,7 +54,7 @@ static PetscErrorCode Minimise(EqmRegistration r, EqmSide *side, const PetscInt 
   PetscBool reached = PETSC_FALSE;
 
   PetscFunctionBegin;
-  for (PetscInt stage = 0; stage < r->set.stages && !reached; stage++, weight *= 10.)
+  for (PetscInt stage = 0; stage < r->set.stages && !reached && r->status != EQM_STATUS_STOPPED; stage++, weight *= 10.)
     PetscCall(MinimiseOnce(r, side, vertices, goal, weight, &reached));
   PetscFunctionReturn(0);
 }
@@ -128,7 +128,7 @@ static PetscErrorCode MoveToMiddles(EqmRegistration r)
     for (PetscInt k = 0; k < dim && r->kind == EQM_IMAGE_SPHERE; k++) middle[dim * i + k] /= length;
   }
   PetscCall(Move(r, &r->a, r->landmarks.vertex, middle));
-  PetscCall(Move(r, &r->b, of_b, middle));
+  if (r->status != EQM_STATUS_STOPPED) PetscCall(Move(r, &r->b, of_b, middle));
   PetscCall(PetscFree2(middle, of_b));
   PetscFunctionReturn(0);
 }

@@ -192,16 +192,25 @@ PetscErrorCode EqmRegistrationSolve(EqmRegistration r)
 {
   PetscFunctionBegin;
   PetscCall(EqmSideSolve(r, &r->a));
-  if (!r->bare) PetscCall(EqmSideSolve(r, &r->b));
-  if (r->landmarks.num) {
+  if (!r->bare && r->status != EQM_STATUS_STOPPED) PetscCall(EqmSideSolve(r, &r->b));
+  if (r->landmarks.num && r->status != EQM_STATUS_STOPPED) {
     PetscCall(EqmFindGoals(r));
     PetscCall(EqmRotateOntoLandmarks(r));
     PetscCall(EqmAdapt(r));
   }
+  if (r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
   PetscCall(EqmCompose(r));
   PetscCall(EqmMeasureCorrespondence(r));
   PetscCall(TakeRun(r));
   PetscCall(Judge(r));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmRegistrationGetStatus(EqmRegistration r, EqmStatus *status, const char **message)
+{
+  PetscFunctionBegin;
+  *status = r->status;
+  if (message) *message = r->message;
   PetscFunctionReturn(0);
 }
 

@@ -60,7 +60,8 @@ struct _p_EqmRegistration {
   EqmLocation forward, inverse;
   PetscReal *image, *inverse_image; /* phi per owned vertex of A, phi^-1 per owned vertex of B: three coordinates */
   EqmMap map;
-  EqmStatus status;
+  PetscInt stage;   /* minimisations so far: each has a checkpoint of its own */
+  EqmStatus status; /* EQM_STATUS_STOPPED: to be continued, and nothing further is done */
   char message[EQM_MESSAGE_MAX];
   EqmRegisterFigures figures;
 };
@@ -68,6 +69,8 @@ struct _p_EqmRegistration {
 /* ---- side.c */
 PETSC_INTERN PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *map_file);
 PETSC_INTERN PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side);
+/* Run a solver that is ready, as the next stage; takes note if it was stopped to be continued. Collective. */
+PETSC_INTERN PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSideReset(EqmSide *side);
 /* `width` values of each of `num` vertices (input numbers), from values per owned vertex; the same on every rank.
    Errors: EQM_ERR_USAGE (a vertex of no cell). Collective. */

@@ -133,6 +133,17 @@ PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, c
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSolverSetStage(solver, ++r->stage));
+  PetscCall(EqmSolverSolve(solver));
+  if (solver->status != EQM_STATUS_STOPPED) PetscFunctionReturn(0);
+  r->status = solver->status;
+  PetscCall(PetscStrncpy(r->message, solver->message, sizeof(r->message)));
+  PetscFunctionReturn(0);
+}
+
 /* Compute the map if it was not read. Collective. */
 PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side)
 {
@@ -145,7 +156,7 @@ PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side)
   PetscCall(EqmSolverCreate(side->mesh, r->target, &solver));
   if (side->mesh->cell_size == 3) solver->settings.ratio_tol = EQM_REGISTER_RATIO_TOL;
   PetscCall(EqmSolverSetFromOptions(solver));
-  PetscCall(EqmSolverSolve(solver));
+  PetscCall(EqmRegistrationMinimise(r, solver));
   PetscCall(EqmSolverGetMap(solver, side->soup, &side->map));
   PetscCall(PetscMalloc1(r->dim * side->mesh->num_local, &side->x));
   PetscCall(PetscArraycpy(side->x, solver->place.x, r->dim * side->mesh->num_local));
