@@ -1,0 +1,323 @@
+"""Runs that are interrupted and go on: test_restart.py PROGRAM [RANKS [KILLS]]. With KILLS: only so many runs that are killed at
+random moments, on 1, 2 and 3 ranks in turn. Where one rank writes what another reads the figures agree to the solver's tolerance;
+on the same number of ranks to the last bit."""
+import csv
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from program import Program  # noqa: E402
+
+MESHES = (("disk", "hills.obj"), ("square", "patch.obj"), ("sphere", "head.obj"), ("conformal", "hills.obj"), ("conformal", "head.obj"))
+ENDLESS = ("-energy_rtol", 0, "-ratio_tol", 0)
+
+
+def history(program, name):
+    """All columns but the clock."""
+    with open(program.file(name)) as stream:
+        return [row[:-1] for row in csv.reader(stream)]
+
+
+def coordinates(program, name):
+    with h5py.File(program.file(name), "r") as result:
+        return result["/map/coordinates"][...]
+
+
+def energy(program, name):
+    return json.loads(program.read(name))["energy"]["final"]
+
+
+def check_same(program, name, reference, what=""):
+    assert history(program, name + ".csv") == history(program, reference + ".csv"), f"{what} {name}: another history than {reference}"
+    assert numpy.array_equal(coordinates(program, name + ".h5"), coordinates(program, reference + ".h5")), f"{what} {name}: another map"
+
+
+def outputs(name):
+    return ("-o", name + ".h5", "-history", name + ".csv", "-summary", name + ".json", "-quiet")
+
+
+def check_readable(program, name):
+    """What lies there under its name is whole."""
+    for candidate in (name, name + ".previous"):
+        if os.path.exists(program.file(candidate)):
+            with h5py.File(program.file(candidate), "r") as state:
+                assert state.attrs["complete"] == 1 and len(state["/map/coordinates"]) > 0
+
+
+def remove(program, *names):
+    for name in names:
+        for candidate in (name, name + ".previous"):
+            if os.path.exists(program.file(candidate)):
+                os.remove(program.file(candidate))
+
+
+def kill(program, process, delay):
+    """SIGKILL to all ranks at once after a while; False if the run had ended by then."""
+    try:
+        process.wait(delay)
+        return False
+    except subprocess.TimeoutExpired:
+        pass
+    for number in [*program.processes(process), process.pid]:
+        try:
+            os.kill(number, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    process.communicate(timeout=60)
+    return True
+
+
+def check_kills(program, ranks, times, rng):
+    """Killed again and again, also while writing, restarted until it ends: as if nothing had happened."""
+    options = ("-method", "rgd", "-max_it", 40, *ENDLESS) if ranks > 1 else ("-method", "lbfgs", "-max_it", 40, *ENDLESS)
+    run = lambda *more: ("disk", "hills.obj", *options, *more)  # noqa: E731
+    program.succeed(*run("-max_it", 0, "-checkpoint", "start.ck", *outputs("start")), codes=(4,), ranks=ranks)
+    begun = time.time()
+    program.succeed(*run("-restart", "start.ck", "-checkpoint", "whole.ck", "-checkpoint_every", 1, *outputs("whole")), codes=(4,),
+                    ranks=ranks)
+    length = time.time() - begun
+    killed = 0
+    while killed < times:
+        remove(program, "run.ck")
+        for _ in range(200):
+            there = [name for name in ("run.ck", "run.ck.previous") if os.path.exists(program.file(name))]
+            process = program.start(*run("-restart", "run.ck" if there else "start.ck", "-checkpoint", "run.ck", "-checkpoint_every",
+                                         1, *outputs("run")), ranks=ranks)
+            if killed < times and kill(program, process, rng.uniform(0.1, 1.2) * length):
+                killed += 1
+                check_readable(program, "run.ck")
+                continue
+            text = process.communicate(timeout=120)[0]
+            assert process.returncode == 4, text
+            break
+        check_same(program, "run", "whole")
+    leftovers = [name for name in os.listdir(program.folder) if name.endswith(".tmp")]
+    assert not leftovers, f"left behind: {leftovers}"
+
+
+def methods_of(program, command):
+    """Those that --help lists, the default first."""
+    lines = program.succeed(command, "--help", ranks=1).stdout.splitlines()
+    for number, line in enumerate(lines):
+        if line.strip().startswith("-method"):
+            text = " ".join(word.strip() for word in lines[number + 1:number + 4])
+            return text.split("the iteration: ")[1].split("  ")[0].split(" -")[0].replace("auto, ", "").split(", ")
+    raise AssertionError(f"{command} --help says nothing of -method")
+
+
+def check_methods(program):
+    """Every method of every command goes on to the last bit. On several ranks only what does not solve linear systems: a parallel
+    solver may round in the order in which contributions arrive."""
+    some = (("disk", "hills.obj", "rgd"), ("sphere", "head.obj", "rgd"))
+    every = [(command, mesh, method) for command, mesh in MESHES for method in methods_of(program, command)]
+    every += [("disk", "hills.obj", "ncg", "-ncg_refresh", 2), ("disk", "hills.obj", "lm", "-balance", .02),
+              ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang")]
+    for command, mesh, method, *options in every if program.ranks == 1 else some:
+        run = (command, mesh, "-method", method, *options, *ENDLESS)
+        start = program.run(*run, "-max_it", 0, "-checkpoint", "start.ck", *outputs("start"))
+        if start.returncode == 2 and "no such method for the" in start.stderr:
+            continue  # the command has it for other meshes
+        assert start.returncode in (0, 4, 5), f"{command} {method}: {start.stderr}"
+        whole = program.run(*run, "-restart", "start.ck", "-max_it", 5, "-checkpoint", "run.ck", "-checkpoint_every", 3, *outputs("whole"))
+        if not os.path.exists(program.file("run.ck.previous")):  # it has ended before
+            shutil.copy(program.file("run.ck"), program.file("run.ck.previous"))
+        again = program.run(*run, "-restart", "run.ck.previous", "-max_it", 5, *outputs("run"))
+        assert whole.returncode == again.returncode and whole.returncode in (0, 4, 5), f"{command} {method}: {whole.stderr}{again.stderr}"
+        check_same(program, "run", "whole", f"{command} -method {method} {options}")
+        work = [json.loads(program.read(name))["work"] for name in ("run.json", "whole.json")]
+        assert work[0] == work[1], f"{command} {method}: {work}"
+        remove(program, "run.ck", "start.ck")
+
+
+def check_other_ranks(program):
+    """A checkpoint of these ranks, read on 1, 2 and 3."""
+    run = ("disk", "hills.obj", "-balance", ".02")
+    program.succeed(*run, *outputs("whole"))
+    program.succeed(*run, "-max_it", 3, "-checkpoint", "run.ck", *outputs("part"), codes=(4,))
+    for ranks in (1, 2, 3):
+        program.succeed(*run, "-restart", "run.ck", *outputs("run"), ranks=ranks)
+        then, now = energy(program, "whole.json"), energy(program, "run.json")
+        assert abs(now - then) <= 1e-8 * then, f"{program.ranks} -> {ranks} ranks: {now!r}, not {then!r}"
+
+
+def spoil(program, name, how):
+    content = bytearray(program.read(name))
+    if how == "emptied":
+        content = b""
+    elif how == "truncated":
+        content = content[:len(content) * 2 // 3]
+    elif how == "flipped":
+        content[len(content) * 2 // 3] ^= 16
+    else:
+        content = b"nothing of the kind\n" * 100
+    program.write(name, bytes(content))
+
+
+def check_damage(program):
+    """A damaged checkpoint is skipped for the one before it, with a message; two damaged ones, and those of others, are refused."""
+    run = ("disk", "hills.obj", "-method", "rgd", "-max_it", 12, *ENDLESS)
+    program.succeed(*run, "-checkpoint", "good.ck", "-checkpoint_every", 5, *outputs("whole"), codes=(4,))
+    for how in ("emptied", "truncated", "flipped", "foreign"):
+        for name in ("good.ck", "good.ck.previous"):
+            shutil.copy(program.file(name), program.file(name.replace("good", "bad")))
+        spoil(program, "bad.ck", how)
+        result = program.succeed(*run, "-restart", "bad.ck", *outputs("run"), codes=(4,))
+        assert any("warning" in line and "bad.ck" in line for line in program.messages(result)), f"{how}: {result.stderr}"
+        check_same(program, "run", "whole")
+        spoil(program, "bad.ck.previous", how)
+        remove(program, "run.h5")
+        program.succeed(*run, "-restart", "bad.ck", *outputs("run"), codes=(7,))
+        assert not os.path.exists(program.file("run.h5"))
+    os.remove(program.file("bad.ck"))
+    shutil.copy(program.file("good.ck.previous"), program.file("bad.ck.previous"))
+    program.succeed(*run, "-restart", "bad.ck", *outputs("run"), codes=(4,))
+    check_same(program, "run", "whole")
+    program.succeed(*run, "-restart", "nosuch.ck", *outputs("run"), codes=(6,))
+    program.succeed(*run, "-restart", "whole.h5", *outputs("run"), codes=(7,))
+
+
+def check_foreign(program):
+    """Another mesh, command, method, density or weight of the angles: refused, and the message says which."""
+    run = ("-max_it", 12, *ENDLESS, "-restart", "good.ck", *outputs("run"))
+    program.write("density.csv", "cell,density\n" + "".join(f"{c},{1 + c % 2}\n" for c in range(program.cells)))
+    for word, arguments in (("checksum", ("disk", "other.obj", "-method", "rgd")), ("command", ("square", "hills.obj", "-method", "rgd")),
+                            ("method", ("disk", "hills.obj", "-method", "ncg")), ("-balance", ("disk", "hills.obj", "-method", "rgd", "-balance", ".1")),
+                            ("density", ("disk", "hills.obj", "-method", "rgd", "-density", "density.csv"))):
+        result = program.succeed(*arguments, *run, codes=(7,))
+        assert word in result.stderr, f"{word}: {result.stderr}"
+
+
+def check_finished(program):
+    """The checkpoint of a run that has come to its end leads to the same end; with more iterations allowed it goes on."""
+    run = ("disk", "hills.obj", "-checkpoint", "run.ck")
+    program.succeed(*run, *outputs("whole"))
+    program.succeed(*run, "-restart", "run.ck", *outputs("run"))
+    check_same(program, "run", "whole")
+    run = ("disk", "hills.obj", "-method", "rgd", *ENDLESS, "-checkpoint", "run.ck")
+    program.succeed(*run, "-max_it", 4, *outputs("run"), codes=(4,))
+    program.succeed(*run, "-max_it", 9, "-restart", "run.ck", *outputs("run"), codes=(4,))
+    assert len(history(program, "run.csv")) == 11
+
+
+def wait_for(condition, process, seconds=60):
+    for _ in range(int(20 * seconds)):
+        if condition():
+            return
+        assert process.poll() is None, f"ended too early: {process.communicate()[0]}"
+        time.sleep(0.05)
+    raise AssertionError("waited in vain")
+
+
+def stop_and_go(program, request, *options, code=75):
+    """Start a long run, make the request once it is under way; it must end with the code, and say how to go on."""
+    remove(program, "run.ck", "run.h5", "run.json")
+    run = ("disk", "hills.obj", "-method", "rgd", "-max_it", 100000, *ENDLESS)
+    process = program.start(*run, "-checkpoint", "run.ck", *options, *outputs("run"))
+    wait_for(lambda: os.path.exists(program.file("run.ck")), process)
+    request(process)
+    text = process.communicate(timeout=60)[0]
+    assert process.returncode == code, f"exit code {process.returncode}: {text}"
+    assert "-restart run.ck" in text and not os.path.exists(program.file("run.h5"))
+    summary = json.loads(program.read("run.json"))
+    assert summary["exit_code"] == code and "-restart" in summary["message"]
+    with h5py.File(program.file("run.ck"), "r") as state:
+        assert state.attrs["complete"] == 1
+    program.succeed(*run, "-max_it", summary["iterations"] + 3, "-restart", "run.ck", *outputs("run"), codes=(4,))
+    assert len(history(program, "run.csv")) == summary["iterations"] + 5
+
+
+def check_stopping(program):
+    """The signals on one rank of several, a file STOP that appears, -wall_time; and without a checkpoint."""
+    signal_one = lambda number: lambda process: os.kill(program.processes(process)[-1], number)  # noqa: E731
+    stop_and_go(program, signal_one(signal.SIGUSR1))
+    stop_and_go(program, signal_one(signal.SIGTERM))
+    stop_and_go(program, lambda process: process.send_signal(signal.SIGUSR1))  # a launcher hands it on
+    stop_and_go(program, lambda process: program.write("STOP", ""))
+    stop_and_go(program, lambda process: os.utime(program.file("STOP")))  # one that is there already waits for a touch
+    os.remove(program.file("STOP"))
+    stop_and_go(program, lambda process: None, "-wall_time", 4)
+    process = program.start("disk", "hills.obj", "-method", "rgd", "-max_it", 100000, *ENDLESS, "-o", "run.h5")
+    time.sleep(3)
+    signal_one(signal.SIGTERM)(process)
+    text = process.communicate(timeout=60)[0]
+    assert process.returncode == 4 and "TERM" in text and len(coordinates(program, "run.h5")), text
+
+
+def check_register(program):
+    """A registration is several minimisations: stopped in the second, it goes on there."""
+    run = ("register", "hills.obj", "other.obj", "-quiet")
+    program.succeed(*run, "-o", "whole.h5", codes=(0, 4, 5))
+    process = program.start(*run, "-o", "run.h5", "-checkpoint", "run.ck", "-checkpoint_every", 1)
+    wait_for(lambda: os.path.exists(program.file("run.ck.2")), process)
+    os.kill(program.processes(process)[0], signal.SIGUSR1)
+    text = process.communicate(timeout=60)[0]
+    if process.returncode != 75:  # it was quicker
+        assert process.returncode in (0, 4, 5), text
+        return
+    assert "-restart run.ck\n" in text and not os.path.exists(program.file("run.h5")), text
+    program.succeed(*run, "-o", "run.h5", "-restart", "run.ck", codes=(0, 4, 5))
+    with h5py.File(program.file("run.h5")) as run, h5py.File(program.file("whole.h5")) as whole:
+        difference = numpy.abs(run["/map/coordinates"][...] - whole["/map/coordinates"][...]).max()
+    assert difference == 0.0 if program.ranks == 1 else difference < 1e-2, difference
+
+
+def check_full_disk(program):
+    """The checkpoint does not fit: told once, the run goes on, what was there before is still good."""
+    disk = program.file("disk")
+    os.mkdir(disk)
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=256k", "tmpfs", disk], stderr=subprocess.DEVNULL).returncode:
+        print("full disk: not tested, for no file system can be mounted here")
+        return
+    try:
+        run = ("disk", "hills.obj", "-method", "rgd", "-max_it", 12, *ENDLESS)
+        program.succeed(*run, "-max_it", 3, "-checkpoint", "disk/run.ck", *outputs("part"), codes=(4,))
+        before = program.read("disk/run.ck")
+        with open(program.file("disk/filler"), "wb", buffering=0) as filler:
+            try:
+                while filler.write(b"x" * 4096):
+                    pass
+            except OSError:
+                pass
+        result = program.succeed(*run, "-restart", "disk/run.ck", "-checkpoint", "disk/run.ck", "-checkpoint_every", 1, *outputs("run"),
+                                 codes=(4,))
+        assert len([line for line in program.messages(result) if "No space" in line]) == 1, result.stderr
+        assert program.read("disk/run.ck") == before
+        assert len(history(program, "run.csv")) == 14
+        assert sorted(os.listdir(disk)) == ["filler", "run.ck", "run.ck.previous"], os.listdir(disk)
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def make_meshes(program):
+    for shape, name, seed in (("hills", "hills", 5), ("hills", "other", 6), ("patch", "patch", 1), ("head", "head", 2)):
+        program.succeed("generate", shape, "-n", 400, "-seed", seed, "-o", name + ".obj", ranks=1)
+    program.cells = sum(line.startswith(b"f") for line in program.read("hills.obj").splitlines())
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
+        make_meshes(program)
+        if len(sys.argv) > 3:
+            for ranks in (1, 2, 3):
+                check_kills(program, ranks, (int(sys.argv[3]) + 3 - ranks) // 3, random.Random(ranks))
+            return 0
+        check_kills(program, program.ranks, 4, random.Random(program.ranks))
+        for check in (check_methods, check_other_ranks, check_damage, check_foreign, check_finished, check_stopping, check_register, check_full_disk):
+            begun = time.time()
+            check(program)
+            print(f"{check.__name__[6:]}: {time.time() - begun:.1f} s", flush=True)
+    return 0
+
+
+sys.exit(main())
