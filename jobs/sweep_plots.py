@@ -110,6 +110,9 @@ def draw_panel(axes, runs, column):
         axes.plot([], [], linestyle="none", markeredgecolor="0.3", label="published", **HOLLOW)
     style(axes)
     axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    if high < 100. * low:
+        plain_numbers(axes.yaxis)
     longest = max(run.summary["iterations"] for run in runs)
     if column == "seconds":
         axes.set_xscale("log")

@@ -73,7 +73,7 @@ def lines_of(results, row, rows):
     }
     ours = {**figures_at_end(summary), **noise_error(results, row, rows)}
     yield fixed, ours, paper.get(None, {})
-    for after in sorted(key for key in paper if key is not None):
+    for after in sorted(key for key in paper if key is not None and row.paper == row.preset):
         yield {**fixed, "status": "on the way"}, figures_after(history, after), {**paper[after], "iterations": after}
 
 
