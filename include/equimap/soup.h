@@ -25,8 +25,9 @@ struct _p_EqmSoup {
   PetscReal *vertices;               /* 3 * (vertex_end - vertex_start) */
   PetscInt *cells;                   /* cell_size * (cell_end - cell_start), input vertex numbers */
   PetscReal *density;                /* per cell of the slab, positive, or NULL: all one */
-  char file[PETSC_MAX_PATH_LEN];     /* where it came from */
-  PetscInt64 checksum;               /* CRC-32 of vertices and cells in input order, rank-independent */
+  PetscReal *edge_length; /* per cell of the slab and corner, of the edge opposite; NULL: edges are straight in space */
+  char file[PETSC_MAX_PATH_LEN]; /* where it came from */
+  PetscInt64 checksum;           /* CRC-32 of vertices and cells in input order, rank-independent */
 };
 
 /* Deal a mesh that rank 0 holds (NULL elsewhere) to all ranks; the arrays of `serial` are taken over and freed.
@@ -66,6 +67,12 @@ PETSC_EXTERN PetscErrorCode EqmSoupGenerate(MPI_Comm comm, const char *shape, Pe
 PETSC_EXTERN PetscErrorCode EqmGenerateShapes(const char *const **names, const char *const **descriptions, int *n);
 /* Split every triangle into four (every tetrahedron into eight) `times` times. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupRefine(EqmSoup *soup, PetscInt times);
+
+/* The intrinsic Delaunay triangulation of a surface: the same vertices and the same metric, as many cells, edges
+   flipped until no cotangent weight is negative. Edges are then known by edge_length alone, and two of them may join
+   the same vertices. Cell densities are dropped. `flips`: how many edges were flipped. Errors: none of its own.
+   Collective. */
+PETSC_EXTERN PetscErrorCode EqmSoupFlip(EqmSoup soup, EqmSoup *flipped, PetscInt64 *flips);
 
 /* What the diagnosis found. `count` findings of a kind, the first few in input numbering. */
 typedef enum {

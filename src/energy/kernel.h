@@ -55,6 +55,16 @@ static inline PetscReal EqmDot3(const PetscReal u[3], const PetscReal v[3])
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
+/* Area of a triangle from the lengths of its edges, accurate for needles (Kahan); zero if they do not close. */
+static inline PetscReal EqmAreaOfLengths(const PetscReal length[3])
+{
+  const PetscReal low = PetscMin(length[0], length[1]), high = PetscMax(length[0], length[1]);
+  const PetscReal a = PetscMax(high, length[2]), b = PetscMax(low, PetscMin(high, length[2])),
+                  c = PetscMin(low, length[2]);
+
+  return .25 * PetscSqrtReal(PetscMax((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c)), 0.));
+}
+
 /* Half the determinant of three points: positive where they run counterclockwise seen from outside the sphere, and near
    the flat area where the triangle is small. */
 static inline PetscReal EqmHalfDet(const PetscReal *p, const PetscReal *q, const PetscReal *r)

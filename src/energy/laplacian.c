@@ -54,7 +54,9 @@ static void WeightsOfRange(EqmDomain domain, EqmLaplacianKind kind, const EqmPla
   if (kind == EQM_LAPLACIAN_UNIFORM) {
     for (PetscInt k = edges * first; k < edges * last; k++) weights[k] = .5;
   } else if (mesh->cell_size == 4) {
-    if (kind == EQM_LAPLACIAN_COTANGENT)
+    if (kind == EQM_LAPLACIAN_COTANGENT && mesh->edge_length)
+      WeightsOfLengths(mesh->edge_length, mesh->shape, first, last, weights);
+    else if (kind == EQM_LAPLACIAN_COTANGENT)
       VolumeWeights(mesh, 1., mesh->position, mesh->shape, first, last, weights);
     else
       VolumeWeights(mesh, 2. / 3., place->x, mesh->weight, first, last, weights);
@@ -64,6 +66,18 @@ static void WeightsOfRange(EqmDomain domain, EqmLaplacianKind kind, const EqmPla
     DotWeights(2, mesh->cells, place->x, mesh->weight, first, last, weights);
   } else {
     DotWeights(3, mesh->cells, place->x, mesh->weight, first, last, weights);
+  }
+}
+
+/* Half the cotangents of triangles that are known by the lengths of their edges. */
+static void WeightsOfLengths(const PetscReal *length, const PetscReal *area, PetscInt first, PetscInt last,
+                             PetscReal *weights)
+{
+  for (PetscInt c = first; c < last; c++) {
+    for (PetscInt k = 0; k < 3; k++) {
+      const PetscReal *const l = length + 3 * c;
+      weights[3 * c + k] = .125 * (PetscSqr(l[(k + 1) % 3]) + PetscSqr(l[(k + 2) % 3]) - PetscSqr(l[k])) / area[c];
+    }
   }
 }
 

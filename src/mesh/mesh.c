@@ -159,24 +159,29 @@ static PetscErrorCode SortCells(EqmMesh mesh, const EqmStars *stars, const Petsc
   PetscFunctionReturn(0);
 }
 
-/* Density of every cell that arrived, asked from the slabs; NULL where the soup has none. */
-static PetscErrorCode CellDensities(EqmSoup soup, const EqmStars *stars, const PetscInt *order, PetscReal **density)
+/* `width` reals of every cell that arrived, asked from the slabs; NULL where the soup has none. */
+static PetscErrorCode CellReals(EqmSoup soup, const EqmStars *stars, const PetscInt *order, PetscInt width,
+                                const PetscReal *slab, PetscReal **reals)
 {
+  MPI_Datatype row;
   PetscInt *cell;
   PetscLayout layout;
   PetscSF sf;
 
   PetscFunctionBegin;
-  *density = NULL;
-  if (!soup->density) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(stars->num_cells, density));
+  *reals = NULL;
+  if (!slab) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(width * stars->num_cells, reals));
   PetscCall(PetscMalloc1(stars->num_cells, &cell));
   for (PetscInt c = 0; c < stars->num_cells; c++) cell[c] = stars->records[stars->width * order[c]];
   PetscCall(PetscLayoutCreateFromSizes(soup->comm, soup->cell_end - soup->cell_start, soup->num_cells, 1, &layout));
   PetscCall(PetscSFCreate(soup->comm, &sf));
   PetscCall(PetscSFSetGraphLayout(sf, layout, stars->num_cells, NULL, PETSC_OWN_POINTER, cell));
-  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, soup->density, *density, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, soup->density, *density, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &row));
+  PetscCallMPI(MPI_Type_commit(&row));
+  PetscCall(PetscSFBcastBegin(sf, row, slab, *reals, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, row, slab, *reals, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&row));
   PetscCall(PetscSFDestroy(&sf));
   PetscCall(PetscLayoutDestroy(&layout));
   PetscCall(PetscFree(cell));
@@ -204,7 +209,8 @@ static PetscErrorCode TakeStars(EqmMesh mesh, EqmSoup soup, const EqmStars *star
     for (PetscInt a = 0; a < cs; a++) mesh->cells[cs * c + a] = cells[cs * order[c] + a];
     mesh->cell_input[c] = stars->records[stars->width * order[c]];
   }
-  PetscCall(CellDensities(soup, stars, order, density));
+  PetscCall(CellReals(soup, stars, order, 1, soup->density, density));
+  PetscCall(CellReals(soup, stars, order, 3, soup->edge_length, &mesh->edge_length));
   PetscCall(PetscFree2(cells, order));
   PetscFunctionReturn(0);
 }
@@ -268,6 +274,7 @@ PetscErrorCode EqmMeshDestroy(EqmMesh *mesh)
   PetscCall(PetscFree((*mesh)->position));
   PetscCall(PetscFree((*mesh)->weight));
   PetscCall(PetscFree((*mesh)->shape));
+  PetscCall(PetscFree((*mesh)->edge_length));
   PetscCall(PetscFree((*mesh)->on_boundary));
   PetscCall(PetscFree((*mesh)->boundary_facets));
   PetscCall(PetscFree((*mesh)->boundary_order));

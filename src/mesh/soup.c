@@ -267,7 +267,7 @@ PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
   PetscFunctionBegin;
   PetscCall(PetscNew(&s));
   *s = *soup;
-  s->density = NULL;
+  s->density = s->edge_length = NULL;
   PetscCall(PetscMalloc1(3 * num_vertices, &s->vertices));
   PetscCall(PetscMalloc1(width * num_cells, &s->cells));
   PetscCall(PetscArraycpy(s->vertices, soup->vertices, 3 * num_vertices));
@@ -275,6 +275,10 @@ PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
   if (soup->density) {
     PetscCall(PetscMalloc1(num_cells, &s->density));
     PetscCall(PetscArraycpy(s->density, soup->density, num_cells));
+  }
+  if (soup->edge_length) {
+    PetscCall(PetscMalloc1(3 * num_cells, &s->edge_length));
+    PetscCall(PetscArraycpy(s->edge_length, soup->edge_length, 3 * num_cells));
   }
   *copy = s;
   PetscFunctionReturn(0);
@@ -288,6 +292,7 @@ PetscErrorCode EqmSoupDestroy(EqmSoup *soup)
   PetscCall(PetscFree((*soup)->vertices));
   PetscCall(PetscFree((*soup)->cells));
   PetscCall(PetscFree((*soup)->density));
+  PetscCall(PetscFree((*soup)->edge_length));
   PetscCall(PetscFree(*soup));
   PetscFunctionReturn(0);
 }
