@@ -23,6 +23,11 @@ PETSC_EXTERN PetscErrorCode EqmSolverSetLandmarks(EqmSolver solver, PetscInt num
                                                   PetscReal tolerance);
 /* Minimise. Never fails for want of convergence: the map's status tells. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverSolve(EqmSolver solver);
+/* A conformal map of a closed surface by the default method that has folds or has jammed, or has triangles too small
+   for their orientation to be computed safely, is made once more on the intrinsic Delaunay triangulation of `soup`,
+   which must be the one that the mesh was made of. Nothing happens where all is well. Call after EqmSolverSolve.
+   Collective. */
+PETSC_EXTERN PetscErrorCode EqmSolverStraighten(EqmSolver solver, EqmSoup soup);
 /* The present map in the numbering of `soup`, which must be the one that the mesh was made of and must outlive the map;
    with distortion, history and work. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverGetMap(EqmSolver solver, EqmSoup soup, EqmMap *map);

@@ -181,6 +181,7 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(EqmSolverCreate(mesh, line->command, &solver));
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmSolverSolve(solver));
+  PetscCall(EqmSolverStraighten(solver, input->mapped));
   PetscCall(EqmSolverGetMap(solver, input->mapped, &found));
   PetscCall(EqmInputTakeMap(input, mesh, found, &map));
   PetscCall(TakeEigenvalues(options, ledger, solver, map));

@@ -69,8 +69,9 @@ static inline PetscReal EqmAreaOfLengths(const PetscReal length[3])
    the flat area where the triangle is small. */
 static inline PetscReal EqmHalfDet(const PetscReal *p, const PetscReal *q, const PetscReal *r)
 {
+  const PetscReal u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
   PetscReal n[3];
-  EqmCross(q, r, n);
+  EqmCross(u, v, n); /* differences first: the cross product of two points that are close has few digits */
   return .5 * EqmDot3(p, n);
 }
 
@@ -136,9 +137,10 @@ static inline void EqmMeasureGradient(EqmMeasureKind kind, const PetscReal *cons
   }
   const PetscReal u[3] = {p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2]};
   const PetscReal v[3] = {p[2][0] - p[0][0], p[2][1] - p[0][1], p[2][2] - p[0][2]};
-  PetscReal n[3], scale;
+  PetscReal n[3], squared, scale;
   EqmCross(u, v, n);
-  scale = .5 / PetscSqrtReal(EqmDot3(n, n));
+  squared = EqmDot3(n, n);
+  scale = squared > 0. ? .5 / PetscSqrtReal(squared) : 0.; /* a triangle shrunk to nothing has no normal */
   for (PetscInt k = 0; k < 3; k++) n[k] *= scale;
   for (PetscInt a = 0; a < 3; a++) {
     const PetscReal *const s = p[(a + 1) % 3], *const t = p[(a + 2) % 3];

@@ -43,6 +43,18 @@ static void VolumeWeights(EqmMesh mesh, PetscReal scale, const PetscReal *x, con
   }
 }
 
+/* Half the cotangents of triangles that are known by the lengths of their edges. */
+static void WeightsOfLengths(const PetscReal *length, const PetscReal *area, PetscInt first, PetscInt last,
+                             PetscReal *weights)
+{
+  for (PetscInt c = first; c < last; c++) {
+    for (PetscInt k = 0; k < 3; k++) {
+      const PetscReal *const l = length + 3 * c;
+      weights[3 * c + k] = .125 * (PetscSqr(l[(k + 1) % 3]) + PetscSqr(l[(k + 2) % 3]) - PetscSqr(l[k])) / area[c];
+    }
+  }
+}
+
 /* cot = dot / (2 area); 000 (2d): cot |f(t)| / (2 |t|) = dot / (4 |t|), smooth through image area zero. */
 static void WeightsOfRange(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place, PetscInt b,
                            PetscReal *weights)
@@ -54,30 +66,18 @@ static void WeightsOfRange(EqmDomain domain, EqmLaplacianKind kind, const EqmPla
   if (kind == EQM_LAPLACIAN_UNIFORM) {
     for (PetscInt k = edges * first; k < edges * last; k++) weights[k] = .5;
   } else if (mesh->cell_size == 4) {
-    if (kind == EQM_LAPLACIAN_COTANGENT && mesh->edge_length)
-      WeightsOfLengths(mesh->edge_length, mesh->shape, first, last, weights);
-    else if (kind == EQM_LAPLACIAN_COTANGENT)
+    if (kind == EQM_LAPLACIAN_COTANGENT)
       VolumeWeights(mesh, 1., mesh->position, mesh->shape, first, last, weights);
     else
       VolumeWeights(mesh, 2. / 3., place->x, mesh->weight, first, last, weights);
+  } else if (kind == EQM_LAPLACIAN_COTANGENT && mesh->edge_length) {
+    WeightsOfLengths(mesh->edge_length, mesh->shape, first, last, weights);
   } else if (kind == EQM_LAPLACIAN_COTANGENT) {
     DotWeights(3, mesh->cells, mesh->position, mesh->shape, first, last, weights);
   } else if (domain->dim == 2) {
     DotWeights(2, mesh->cells, place->x, mesh->weight, first, last, weights);
   } else {
     DotWeights(3, mesh->cells, place->x, mesh->weight, first, last, weights);
-  }
-}
-
-/* Half the cotangents of triangles that are known by the lengths of their edges. */
-static void WeightsOfLengths(const PetscReal *length, const PetscReal *area, PetscInt first, PetscInt last,
-                             PetscReal *weights)
-{
-  for (PetscInt c = first; c < last; c++) {
-    for (PetscInt k = 0; k < 3; k++) {
-      const PetscReal *const l = length + 3 * c;
-      weights[3 * c + k] = .125 * (PetscSqr(l[(k + 1) % 3]) + PetscSqr(l[(k + 2) % 3]) - PetscSqr(l[k])) / area[c];
-    }
   }
 }
 

@@ -18,9 +18,7 @@ static PetscErrorCode ImageMeasures(EqmMap map, EqmMesh mesh, const PetscReal *x
     } else if (map->dim == 2) {
       a[c] = EqmArea2(x + 2 * v[0], x + 2 * v[1], x + 2 * v[2]);
     } else { /* on the sphere: the flat area with the sign of det(f_i, f_j, f_k) */
-      const PetscReal origin[3] = {0., 0., 0.};
-      const PetscBool seen =
-          EqmVolume(origin, x + 3 * v[0], x + 3 * v[1], x + 3 * v[2]) > 0. ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool seen = (PetscBool)(EqmHalfDet(x + 3 * v[0], x + 3 * v[1], x + 3 * v[2]) > 0.);
       const PetscReal sign = map->in_space || seen ? 1. : -1.;
       a[c] = sign * EqmArea3(x + 3 * v[0], x + 3 * v[1], x + 3 * v[2]);
     }

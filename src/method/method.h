@@ -102,6 +102,8 @@ PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, 
 typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
 PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 
+/* Domain, ordering, first map. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverBegin(EqmSolver solver);
 /* Refresh solver->image and solver->totals from solver->place. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverLook(EqmSolver solver);
 /* Refresh solver->totals, where solver->image is up to date already. Collective. */
@@ -169,6 +171,15 @@ PETSC_INTERN PetscErrorCode EqmSphereGauss(EqmSolver solver, PetscInt steps);
 /* One step of 001 Algorithm 2 with inversion radius 1.2 around the pole that `step` (counted from 0) has its turn.
  * Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscReal *weights);
+/* The same with weights that are given: solve for the cap around a pole with its rim held. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereCapStep(EqmSolver solver, PetscInt step, const PetscReal *weights);
+/* Half determinants from here on up have a sign whatever the order in which they are computed. */
+PETSC_INTERN const PetscReal EqmSmallestImage;
+/* The smallest half determinant of a cell's corners, whatever its sign. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereSmallestImage(EqmSolver solver, PetscReal *smallest);
+/* The harmonic map for the angle weights, cap by cap, centred; where cells would become too small for the arithmetic,
+   with a conductivity that falls towards the tips of limbs, which solver->angle_weights keep. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereResolved(EqmSolver solver);
 /* Turn a map over that is mirrored for the most part. Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereOrient(EqmSolver solver);
 

@@ -53,8 +53,7 @@ PetscErrorCode EqmSolverSum(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* Domain, ordering, first map. */
-static PetscErrorCode Begin(EqmSolver solver)
+PetscErrorCode EqmSolverBegin(EqmSolver solver)
 {
   const EqmMesh mesh = solver->mesh;
 
@@ -221,7 +220,7 @@ static PetscErrorCode End(EqmSolver solver)
 PetscErrorCode EqmSolverSolve(EqmSolver solver)
 {
   PetscFunctionBegin;
-  PetscCall(Begin(solver));
+  PetscCall(EqmSolverBegin(solver));
   if (solver->unfolded_from > 0 && !solver->checkpoints.open) PetscCall(EqmMonitorUnfolded(solver, "at the start"));
   PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   PetscCall(Iterate(solver));

@@ -129,13 +129,14 @@ PetscErrorCode EqmSphereLinear(EqmSolver solver)
 {
   const EqmMesh mesh = solver->mesh;
   PetscInt corner[3];
-  PetscReal position[9], pinned[6], *weights, *z;
+  const PetscReal *weights;
+  PetscReal position[9], pinned[6], *z;
   signed char *group;
 
   PetscFunctionBegin;
   PetscCall(MostRegularTriangle(mesh, corner, position));
   PinnedPlaces(position, pinned);
-  PetscCall(PetscMalloc3(3 * mesh->num_local_cells, &weights, 2 * mesh->num_local, &z, mesh->num_local, &group));
+  PetscCall(PetscMalloc2(2 * mesh->num_local, &z, mesh->num_local, &group));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     group[v] = 0;
     z[2 * v] = z[2 * v + 1] = 0.;
@@ -146,17 +147,17 @@ PetscErrorCode EqmSphereLinear(EqmSolver solver)
       z[2 * v + 1] = pinned[2 * a + 1];
     }
   }
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_COTANGENT, NULL, weights));
+  PetscCall(EqmAngleWeights(solver, &weights));
   PetscCall(EqmHeldSolve(solver, weights, group, 2, z));
   PetscCall(Center(mesh, z));
   PetscCall(DivideByMedian(mesh, z));
   ToSphere(mesh->num_local, 1., z, solver->place.x);
   PetscCall(EqmSphereOrient(solver));
-  PetscCall(PetscFree3(weights, z, group));
+  PetscCall(PetscFree2(z, group));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscReal *weights)
+PetscErrorCode EqmSphereCapStep(EqmSolver solver, PetscInt step, const PetscReal *weights)
 {
   const EqmMesh mesh = solver->mesh;
   const PetscReal up = step % 2 ? 1. : -1., radius = 1.2;
@@ -165,7 +166,6 @@ PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscRea
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(2 * mesh->num_local, &z, mesh->num_local, &group));
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
   ToPlane(mesh->num_local, up, solver->place.x, z);
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     group[v] = z[2 * v] * z[2 * v] + z[2 * v + 1] * z[2 * v + 1] < radius * radius ? 0 : EQM_GROUP_FIXED;
@@ -174,5 +174,13 @@ PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscRea
   PetscCall(DivideByMedian(mesh, z));
   ToSphere(mesh->num_local, up, z, solver->place.x);
   PetscCall(PetscFree2(z, group));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscReal *weights)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
+  PetscCall(EqmSphereCapStep(solver, step, weights));
   PetscFunctionReturn(0);
 }

@@ -18,6 +18,7 @@ static PetscErrorCode StartInPlane(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartOnSphere(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartDescending(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartConformal(EqmSolver, const StartRow *, PetscInt);
+static PetscErrorCode StartResolved(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartGauss(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartTutteOnSphere(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartInBall(EqmSolver, const StartRow *, PetscInt);
@@ -43,6 +44,9 @@ static const StartRow starts[] = {
      EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 15},
     {"conformal", "linear, then the Mobius map that brings its mass centre to the sphere's", EQM_STARTS_SPHERE,
      StartConformal, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
+    {"resolved",
+     "harmonic with the cotangents, cap by cap; limbs kept from shrinking below what the arithmetic resolves",
+     EQM_STARTS_SPHERE, StartResolved, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"normals", "vertex normals (004 Definition 5.1): folds wherever the surface is hollow", EQM_STARTS_SPHERE,
      StartGauss, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"gauss", "normals, smoothed by heat flow for as long as they fold, and unfolding", EQM_STARTS_SPHERE, StartGauss,
@@ -275,6 +279,15 @@ static PetscErrorCode CenterStart(EqmSolver solver)
   PetscFunctionBegin;
   PetscCall(EqmVertexMass(solver, &mass));
   PetscCall(EqmPlaceCenter(solver->domain, mass, &solver->place, &offset));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartResolved(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  (void)row;
+  (void)steps;
+  PetscFunctionBegin;
+  PetscCall(EqmSphereResolved(solver));
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,113 @@
+/* Angle-preserving maps of closed surfaces with thin limbs. A leg of length l and girth g shrinks by exp(-2 pi l / g):
+   triangles of area 1e-20 on the sphere are not rare, and with 16 digits no determinant of such corners has a sign that
+   does not depend on the order of its computation. */
+#include "method/method.h"
+
+const PetscReal EqmSmallestImage = 4e-15;
+
+/* Limbs are given a conductivity that falls towards their tips, as a power of the scale at which the conformal map has
+   them, from this scale (its logarithm) down. Along a limb a harmonic map then shrinks less: with the power 2 lambda by
+   sqrt(lambda^2 + 1) - lambda of what it did, per length. Weights remain positive, so there is still nothing to fold.
+ */
+static const PetscReal first_scale = -6., power_step = .1;
+
+/* Logarithm of the scale at which the present map has each cell, averaged over neighbours. */
+static PetscErrorCode FindScales(EqmSolver solver, PetscReal *scale)
+{
+  const EqmMesh mesh = solver->mesh;
+  PetscReal *sum;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(2 * mesh->num_local, &sum));
+  PetscCall(EqmImageMeasureOf(solver->domain, EQM_MEASURE_HALF_DET, &solver->place, scale));
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    const PetscReal image = PetscMax(PetscAbsReal(scale[c]), PETSC_SQRT_MACHINE_EPSILON * EqmSmallestImage);
+    for (PetscInt a = 0; a < 3; a++) {
+      PetscReal *const s = sum + 2 * mesh->cells[3 * c + a];
+      s[0] += mesh->weight[c] * .5 * PetscLogReal(image / (solver->domain->target_measure * mesh->weight[c]));
+      s[1] += mesh->weight[c];
+    }
+  }
+  PetscCall(EqmMeshUpdateGhosts(mesh, 2, sum));
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    scale[c] = 0.;
+    for (PetscInt a = 0; a < 3; a++) {
+      const PetscReal *const s = sum + 2 * mesh->cells[3 * c + a];
+      scale[c] += s[0] / s[1] / 3.;
+    }
+  }
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSphereSmallestImage(EqmSolver solver, PetscReal *smallest)
+{
+  PetscReal local = PETSC_MAX_REAL, *det;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &det));
+  PetscCall(EqmImageMeasureOf(solver->domain, EQM_MEASURE_HALF_DET, &solver->place, det));
+  for (PetscInt c = 0; c < solver->mesh->num_owned_cells; c++) local = PetscMin(local, PetscAbsReal(det[c]));
+  PetscCall(MPIU_Allreduce(&local, smallest, 1, MPIU_REAL, MPIU_MIN, solver->comm));
+  PetscCall(PetscFree(det));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Centre(EqmSolver solver)
+{
+  const PetscReal *mass;
+  PetscReal offset;
+
+  PetscFunctionBegin;
+  PetscCall(EqmVertexMass(solver, &mass));
+  PetscCall(EqmPlaceCenter(solver->domain, mass, &solver->place, &offset));
+  PetscFunctionReturn(0);
+}
+
+/* Solve for one cap, then the opposite one, and so on, for as long as the Dirichlet energy of the angle weights falls:
+   the linear map's faults, around its pinned triangle, are gone after a few. */
+static PetscErrorCode ImproveByCaps(EqmSolver solver)
+{
+  enum { MOST_STEPS = 20 };
+  const PetscReal least_fall = 1e-6;
+  const PetscReal *weights;
+  PetscReal energy, before = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  PetscCall(EqmAngleWeights(solver, &weights));
+  for (PetscInt k = 0; k < MOST_STEPS; k++) {
+    PetscCall(EqmSphereCapStep(solver, k, weights));
+    PetscCall(EqmLaplacianEnergy(solver->mesh, weights, 3, solver->place.x, &energy));
+    if (before - energy < least_fall * energy) break;
+    before = energy;
+  }
+  PetscCall(Centre(solver));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSphereResolved(EqmSolver solver)
+{
+  enum { FIRST_POWER = 3, MOST_POWER = 20 };
+  const PetscInt n = solver->mesh->num_local_cells;
+  const PetscReal *weights;
+  PetscReal *scale, *cotangents, smallest;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(n, &scale, 3 * n, &cotangents));
+  PetscCall(EqmAngleWeights(solver, &weights));
+  PetscCall(PetscArraycpy(cotangents, weights, 3 * n));
+  PetscCall(EqmSphereLinear(solver));
+  PetscCall(ImproveByCaps(solver));
+  PetscCall(FindScales(solver, scale));
+  PetscCall(EqmSphereSmallestImage(solver, &smallest));
+  for (PetscInt power = FIRST_POWER; power <= MOST_POWER && smallest < EqmSmallestImage; power++) {
+    for (PetscInt k = 0; k < 3 * n; k++) {
+      const PetscReal below = PetscMin(0., scale[k / 3] - first_scale);
+      solver->angle_weights[k] = cotangents[k] * PetscExpReal(2. * power_step * power * below);
+    }
+    PetscCall(ImproveByCaps(solver));
+    PetscCall(EqmSphereSmallestImage(solver, &smallest));
+  }
+  PetscCall(PetscFree2(scale, cotangents));
+  PetscFunctionReturn(0);
+}
