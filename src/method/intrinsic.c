@@ -14,6 +14,7 @@ static PetscErrorCode TakePlaces(EqmSolver solver, EqmSoup soup, EqmSolver other
   PetscCall(EqmMeshVerticesFromInput(solver->mesh, soup, 3, slab, solver->place.x));
   PetscCall(PetscFree(slab));
   PetscCall(EqmPlaceMakeFrames(solver->domain, &solver->place));
+  if (solver->problem->finish) PetscCall(solver->problem->finish(solver));
   PetscCall(EqmSolverLook(solver));
   if (solver->totals.folds == 0) PetscFunctionReturn(0);
   PetscCall(solver->problem->unfold(solver, &solver->unfolded_from, &solver->unfolded_to));
@@ -55,7 +56,8 @@ static PetscErrorCode SolveFlipped(EqmSolver solver, EqmSoup soup, EqmSoup flipp
   PetscCall(EqmMeshCreate(flipped, solver->mesh->ledger, &mesh));
   PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_DISTRIBUTE));
   PetscCall(EqmSolverCreate(mesh, solver->target, &other));
-  other->settings = solver->settings;
+  other->method = solver->method;
+  other->settings.quiet = solver->settings.quiet;
   PetscCall(PetscStrncpy(other->settings.start, "resolved", sizeof(other->settings.start)));
   PetscCall(EqmSolverBegin(other));
   PetscCall(TakeIfBetter(solver, soup, other, flipped));
@@ -66,8 +68,9 @@ static PetscErrorCode SolveFlipped(EqmSolver solver, EqmSoup soup, EqmSoup flipp
 
 PetscErrorCode EqmSolverStraighten(EqmSolver solver, EqmSoup soup)
 {
-  const PetscBool can = (PetscBool)(!strcmp(solver->target, "conformal") && solver->domain->curved_image &&
-                                    solver->method == solver->problem->offers[0].method);
+  const PetscBool can =
+      (PetscBool)(!strcmp(solver->target, "conformal") && solver->domain->curved_image &&
+                  solver->status != EQM_STATUS_STOPPED && solver->method == solver->problem->offers[0].method);
   EqmSoup flipped;
   PetscInt64 flips;
   PetscReal smallest;
@@ -75,7 +78,8 @@ PetscErrorCode EqmSolverStraighten(EqmSolver solver, EqmSoup soup)
   PetscFunctionBegin;
   if (!can) PetscFunctionReturn(0);
   PetscCall(EqmSphereSmallestImage(solver, &smallest));
-  if (solver->totals.folds == 0 && !solver->stalled && smallest >= EqmSmallestImage) PetscFunctionReturn(0);
+  const PetscBool jammed = (PetscBool)(solver->checkpoints.finished && solver->status == EQM_STATUS_NOT_CONVERGED);
+  if (solver->totals.folds == 0 && !jammed && smallest >= EqmSmallestImage) PetscFunctionReturn(0);
   PetscCall(EqmSoupFlip(soup, &flipped, &flips));
   if (!solver->settings.quiet) {
     PetscCall(PetscPrintf(solver->comm,
