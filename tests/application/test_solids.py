@@ -8,6 +8,9 @@ import os
 import sys
 import tempfile
 
+import h5py
+import numpy
+
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 from program import Program  # noqa: E402
 
@@ -101,6 +104,38 @@ def check_repair(program):
     assert report["commands"]["ball"] and not report["findings"], report["findings"]
 
 
+def volumes(points, cells):
+    corner = points[cells]
+    a, b, c = (corner[:, k] - corner[:, 0] for k in (1, 2, 3))
+    return numpy.einsum("ij,ij->i", numpy.cross(a, b), c) / 6
+
+
+def check_map_of_mended(program):
+    """A map of a mended solid is told in the input's vertices and cells, in every format."""
+    points, cells = bricks((6, 2, 2))
+    cells[5][2:] = cells[5][:1:-1]
+    cells.append(cells[9][1:] + cells[9][:1])
+    program.write("thick.mesh", medit(points, cells))
+    program.succeed("ball", "thick.mesh", "-repair", "-max_it", 20, "-o", "map.h5,map.mesh,map.vtu,map.node",
+                    codes=(0, 4, 5))
+    with h5py.File(program.file("map.h5")) as file:
+        places, ratio = file["/map/coordinates"][:], file["/cell/ratio"][:]
+        assert (file["/mesh/cells"][:] == numpy.array(cells)).all() and places.shape == (len(points), 3)
+        parent, pieces = file["/repaired/parent"][:], file["/repaired/cells"][:]
+        before = volumes(file["/repaired/vertices"][:], pieces)
+        after = volumes(file["/repaired/coordinates"][:], pieces)
+    assert abs(before.sum() - 24) < 1e-12 and before.min() > 0
+    used = sorted(set(parent))
+    assert used == list(range(len(cells) - 1)) and ratio[-1] == 1  # the last cell is a twin
+    share = numpy.bincount(parent, after) / after.sum() / (numpy.bincount(parent, before) / before.sum())
+    assert abs(share - ratio[:-1]).max() < 1e-10, abs(share - ratio[:-1]).max()
+    lines = program.read("map.mesh").decode().split("Vertices\n")[1].splitlines()
+    assert (numpy.array([line.split()[:3] for line in lines[1:len(points) + 1]], float) == places).all()
+    program.succeed("convert", "map.node", "node.mesh")
+    program.succeed("convert", "map.vtu", "vtu.mesh")
+    assert program.read("node.mesh") == program.read("vtu.mesh") == program.read("map.mesh")
+
+
 def check_surface(program):
     """The surface of a solid is one that `sphere` takes, with the boundary's vertices."""
     program.succeed("generate", "figure", "-n", 1000, "-o", "figure.msh")
@@ -119,6 +154,7 @@ def main():
         check_formats(program)
         check_verdicts(program)
         check_repair(program)
+        check_map_of_mended(program)
         check_surface(program)
     print("solids are read, written, diagnosed, mended and peeled as they should be")
     return 0

@@ -71,6 +71,51 @@ static inline PetscErrorCode TestMeshCreate(MPI_Comm comm, const char *shape, Pe
   PetscFunctionReturn(0);
 }
 
+/* A soup of a mesh written down in arrays. */
+static inline PetscErrorCode TestSoupFromArrays(MPI_Comm comm, PetscInt num_vertices, const PetscReal *points,
+                                                PetscInt cell_size, PetscInt num_cells, const PetscInt *corners,
+                                                EqmSoup *soup)
+{
+  EqmSerialMesh serial = {.num_vertices = num_vertices, .num_cells = num_cells, .cell_size = cell_size};
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    PetscCall(PetscMalloc1(3 * num_vertices, &serial.vertices));
+    PetscCall(PetscMalloc1(cell_size * num_cells, &serial.cells));
+    PetscCall(PetscArraycpy(serial.vertices, points, 3 * num_vertices));
+    PetscCall(PetscArraycpy(serial.cells, corners, cell_size * num_cells));
+  }
+  PetscCall(EqmSoupCreateFromRoot(comm, rank == 0 ? &serial : NULL, "arrays", soup));
+  PetscFunctionReturn(0);
+}
+
+/* Blocks cut the owned vertices; each lists every cell that touches it once, in ascending order. */
+static inline PetscErrorCode TestCheckBlocks(EqmMesh mesh)
+{
+  PetscFunctionBegin;
+  CHECK(mesh->block_vertex[0] == 0 && mesh->block_vertex[mesh->num_blocks] == mesh->num_owned, "blocks end at %d",
+        (int)mesh->block_vertex[mesh->num_blocks]);
+  for (PetscInt b = 0; b < mesh->num_blocks; b++) {
+    PetscInt listed = mesh->block_start[b];
+    for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+      PetscBool touches = PETSC_FALSE;
+      for (PetscInt a = 0; a < mesh->cell_size; a++) {
+        const PetscInt v = mesh->cells[mesh->cell_size * c + a];
+        if (v >= mesh->block_vertex[b] && v < mesh->block_vertex[b + 1]) touches = PETSC_TRUE;
+      }
+      if (!touches) continue;
+      CHECK(listed < mesh->block_start[b + 1] && mesh->block_cell[listed] == c, "block %d lacks cell %d", (int)b,
+            (int)c);
+      listed++;
+    }
+    CHECK(listed == mesh->block_start[b + 1], "block %d lists %d cells too many", (int)b,
+          (int)(mesh->block_start[b + 1] - listed));
+  }
+  PetscFunctionReturn(0);
+}
+
 static inline PetscErrorCode TestMeshDestroy(TestMesh *test)
 {
   PetscFunctionBegin;

@@ -158,31 +158,6 @@ static PetscErrorCode CheckBoundary(EqmMesh mesh, EqmSoup serial, const PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Blocks cut the owned vertices; each lists every cell that touches it once, in ascending order. */
-static PetscErrorCode CheckBlocks(EqmMesh mesh)
-{
-  PetscFunctionBegin;
-  CHECK(mesh->block_vertex[0] == 0 && mesh->block_vertex[mesh->num_blocks] == mesh->num_owned, "blocks end at %d",
-        (int)mesh->block_vertex[mesh->num_blocks]);
-  for (PetscInt b = 0; b < mesh->num_blocks; b++) {
-    PetscInt listed = mesh->block_start[b];
-    for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-      PetscBool touches = PETSC_FALSE;
-      for (PetscInt a = 0; a < mesh->cell_size; a++) {
-        const PetscInt v = mesh->cells[mesh->cell_size * c + a];
-        if (v >= mesh->block_vertex[b] && v < mesh->block_vertex[b + 1]) touches = PETSC_TRUE;
-      }
-      if (!touches) continue;
-      CHECK(listed < mesh->block_start[b + 1] && mesh->block_cell[listed] == c, "block %d lacks cell %d", (int)b,
-            (int)c);
-      listed++;
-    }
-    CHECK(listed == mesh->block_start[b + 1], "block %d lists %d cells too many", (int)b,
-          (int)(mesh->block_start[b + 1] - listed));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* To the input's slabs and back: every value at its own vertex or cell. */
 static PetscErrorCode CheckRoundTrip(EqmMesh mesh, EqmSoup soup, const PetscInt *input)
 {
@@ -234,7 +209,7 @@ static PetscErrorCode CheckMesh(EqmSoup soup, EqmSoup serial, PetscReal (*densit
   PetscCall(CheckStars(test.mesh, serial, input));
   PetscCall(CheckMeasures(test.mesh, serial, input, density));
   PetscCall(CheckBoundary(test.mesh, serial, input));
-  PetscCall(CheckBlocks(test.mesh));
+  PetscCall(TestCheckBlocks(test.mesh));
   PetscCall(CheckRoundTrip(test.mesh, soup, input));
   PetscCall(PetscFree(input));
   PetscCall(TestMeshDestroy(&test));
@@ -261,18 +236,9 @@ static PetscErrorCode MakeFan(MPI_Comm comm, EqmSoup *soup)
 {
   static const PetscReal points[12] = {0., 0., 1., 1., 0., 0., -1., 1., 0., -1., -1., 0.};
   static const PetscInt corners[9] = {0, 1, 2, 0, 2, 3, 0, 3, 1};
-  EqmSerialMesh serial = {.num_vertices = 4, .num_cells = 3, .cell_size = 3};
-  PetscMPIInt rank;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (rank == 0) {
-    PetscCall(PetscMalloc1(12, &serial.vertices));
-    PetscCall(PetscMalloc1(9, &serial.cells));
-    PetscCall(PetscArraycpy(serial.vertices, points, 12));
-    PetscCall(PetscArraycpy(serial.cells, corners, 9));
-  }
-  PetscCall(EqmSoupCreateFromRoot(comm, rank == 0 ? &serial : NULL, "fan", soup));
+  PetscCall(TestSoupFromArrays(comm, 4, points, 3, 3, corners, soup));
   PetscFunctionReturn(0);
 }
 

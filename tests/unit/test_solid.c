@@ -72,29 +72,6 @@ static PetscErrorCode CheckCells(EqmMesh mesh, EqmSoup serial)
   PetscFunctionReturn(0);
 }
 
-/* Every block lists the cells around its vertices, in ascending order and not many others. */
-static PetscErrorCode CheckBlocks(EqmMesh mesh)
-{
-  PetscFunctionBegin;
-  CHECK(mesh->block_vertex[0] == 0 && mesh->block_vertex[mesh->num_blocks] == mesh->num_owned, "blocks end at %d",
-        (int)mesh->block_vertex[mesh->num_blocks]);
-  for (PetscInt b = 0; b < mesh->num_blocks; b++) {
-    PetscInt listed = mesh->block_start[b];
-    CHECK(mesh->block_vertex[b] <= mesh->block_vertex[b + 1], "block %d", (int)b);
-    for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-      PetscBool touches = PETSC_FALSE;
-      for (int a = 0; a < 4; a++) {
-        const PetscInt v = mesh->cells[4 * c + a];
-        if (v >= mesh->block_vertex[b] && v < mesh->block_vertex[b + 1]) touches = PETSC_TRUE;
-      }
-      if (touches) CHECK(mesh->block_cell[listed++] == c, "block %d lacks cell %d", (int)b, (int)c);
-    }
-    CHECK(listed == mesh->block_start[b + 1], "block %d lists %d cells too many", (int)b,
-          (int)(mesh->block_start[b + 1] - listed));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* The mesh's own facets look outward: by the divergence theorem they enclose its volume. Each is one rank's that owns
    its vertex of lowest global number. */
 static PetscErrorCode CheckFacets(EqmMesh mesh)
@@ -179,7 +156,7 @@ static PetscErrorCode TestSolid(const char *shape, PetscInt n, const char *optio
   PetscCall(TestOptionsBegin(options_text, &options));
   PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(CheckCells(test.mesh, serial));
-  PetscCall(CheckBlocks(test.mesh));
+  PetscCall(TestCheckBlocks(test.mesh));
   PetscCall(CheckFacets(test.mesh));
   PetscCall(EqmSurfaceCreate(test.mesh, &surface));
   PetscCall(CheckSurface(test.mesh, surface));
@@ -212,18 +189,9 @@ static PetscErrorCode MakeOctahedron(EqmSoup *soup)
 {
   static const PetscReal points[18] = {0., 0., 1., 0., 0., -1., 1., 0., 0., 0., 1., 0., -1., 0., 0., 0., -1., 0.};
   static const PetscInt corners[20] = {0, 1, 3, 2, 1, 0, 4, 3, 0, 1, 5, 4, 0, 1, 2, 5, 3, 0, 2, 1};
-  EqmSerialMesh serial = {.num_vertices = 6, .num_cells = 5, .cell_size = 4};
-  PetscMPIInt rank;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  if (rank == 0) {
-    PetscCall(PetscMalloc1(18, &serial.vertices));
-    PetscCall(PetscMalloc1(20, &serial.cells));
-    PetscCall(PetscArraycpy(serial.vertices, points, 18));
-    PetscCall(PetscArraycpy(serial.cells, corners, 20));
-  }
-  PetscCall(EqmSoupCreateFromRoot(PETSC_COMM_WORLD, rank == 0 ? &serial : NULL, "octahedron", soup));
+  PetscCall(TestSoupFromArrays(PETSC_COMM_WORLD, 6, points, 4, 5, corners, soup));
   PetscFunctionReturn(0);
 }
 
