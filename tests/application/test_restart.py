@@ -18,7 +18,8 @@ import numpy
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 from program import Program  # noqa: E402
 
-MESHES = (("disk", "hills.obj"), ("square", "patch.obj"), ("sphere", "head.obj"), ("conformal", "hills.obj"), ("conformal", "head.obj"))
+MESHES = (("disk", "hills.obj"), ("square", "patch.obj"), ("sphere", "head.obj"), ("conformal", "hills.obj"), ("conformal", "head.obj"),
+          ("ball", "blob.msh"))
 ENDLESS = ("-energy_rtol", 0, "-ratio_tol", 0)
 
 
@@ -299,8 +300,9 @@ def check_full_disk(program):
 
 
 def make_meshes(program):
-    for shape, name, seed in (("hills", "hills", 5), ("hills", "other", 6), ("patch", "patch", 1), ("head", "head", 2)):
-        program.succeed("generate", shape, "-n", 400, "-seed", seed, "-o", name + ".obj", ranks=1)
+    for shape, name, seed in (("hills", "hills.obj", 5), ("hills", "other.obj", 6), ("patch", "patch.obj", 1), ("head", "head.obj", 2),
+                              ("blob", "blob.msh", 1)):
+        program.succeed("generate", shape, "-n", 400, "-seed", seed, "-o", name, ranks=1)
     program.cells = sum(line.startswith(b"f") for line in program.read("hills.obj").splitlines())
 
 
