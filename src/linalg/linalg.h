@@ -131,4 +131,11 @@ PETSC_INTERN PetscErrorCode EqmGeneralFactor(EqmGeneral general, EqmCellMatrix c
 /* Solve in place for right-hand sides that are stored one after the other. Collective. */
 PETSC_INTERN PetscErrorCode EqmGeneralSolve(EqmGeneral general, PetscInt num_rhs, PetscReal *columns);
 
+/* LU of a matrix that is not symmetric, sequential and the same in every run (lu.c). */
+typedef struct _p_EqmLu *EqmLu;
+PETSC_INTERN PetscErrorCode EqmLuCreate(Mat matrix, const char *prefix, EqmLu *lu);
+PETSC_INTERN PetscErrorCode EqmLuDestroy(EqmLu *lu);
+PETSC_INTERN PetscErrorCode EqmLuRefresh(EqmLu lu);
+PETSC_INTERN PetscErrorCode EqmLuSolve(EqmLu lu, Vec b, Vec x);
+
 #endif

@@ -3,7 +3,6 @@
    between large and small. */
 #include "method/method.h"
 #include "energy/kernel.h"
-#include <petscksp.h>
 
 enum { MOST_ROUNDS = 40 };
 #define SHORTEST 1e-12
@@ -13,7 +12,7 @@ typedef struct {
   PetscReal *z;   /* places seen from the cap's far side, two per local vertex */
   PetscBool *cap; /* per local vertex: is it solved for? */
   Mat matrix;
-  KSP ksp;
+  EqmLu lu;
   Vec b, x;
   PetscReal *values;
 } Unfold;
@@ -23,8 +22,6 @@ static PetscErrorCode UnfoldCreate(EqmMesh mesh, Unfold *u)
 {
   PetscInt *row, *column, entry = 0;
   const PetscInt most = 9 * mesh->num_local_cells;
-  PC pc;
-  Mat factor;
 
   PetscFunctionBegin;
   u->mesh = mesh;
@@ -45,18 +42,7 @@ static PetscErrorCode UnfoldCreate(EqmMesh mesh, Unfold *u)
   PetscCall(PetscArrayzero(u->values, most));
   PetscCall(MatSetValuesCOO(u->matrix, u->values, INSERT_VALUES));
   PetscCall(MatCreateVecs(u->matrix, &u->x, &u->b));
-  PetscCall(KSPCreate(mesh->comm, &u->ksp));
-  PetscCall(KSPSetType(u->ksp, KSPPREONLY));
-  PetscCall(KSPSetOperators(u->ksp, u->matrix, u->matrix));
-  PetscCall(KSPGetPC(u->ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscCall(PCFactorSetUpMatSolverType(pc));
-  PetscCall(PCFactorGetMatrix(pc, &factor));
-  PetscCall(
-      MatMumpsSetCntl(factor, 1, 0.)); /* dominant by rows: the diagonal is a good pivot, and others fill without end */
-  PetscCall(KSPSetOptionsPrefix(u->ksp, "unfold_"));
-  PetscCall(KSPSetFromOptions(u->ksp));
+  PetscCall(EqmLuCreate(u->matrix, "unfold_", &u->lu));
   PetscFunctionReturn(0);
 }
 
@@ -64,10 +50,10 @@ static PetscErrorCode UnfoldDestroy(Unfold *u)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree3(u->z, u->cap, u->values));
+  PetscCall(EqmLuDestroy(&u->lu));
   PetscCall(MatDestroy(&u->matrix));
   PetscCall(VecDestroy(&u->x));
   PetscCall(VecDestroy(&u->b));
-  PetscCall(KSPDestroy(&u->ksp));
   PetscFunctionReturn(0);
 }
 
@@ -107,7 +93,7 @@ static PetscErrorCode FillMatrix(Unfold *u)
   for (PetscInt e = 0; e < 9 * mesh->num_local_cells; e++) u->values[e] /= total[mesh->cells[e / 3]];
   PetscCall(PetscFree(total));
   PetscCall(MatSetValuesCOO(u->matrix, u->values, INSERT_VALUES));
-  PetscCall(KSPSetOperators(u->ksp, u->matrix, u->matrix));
+  PetscCall(EqmLuRefresh(u->lu));
   PetscFunctionReturn(0);
 }
 
@@ -122,17 +108,13 @@ static PetscErrorCode SolveCap(Unfold *u)
   PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
   work->factorizations++;
   for (PetscInt k = 0; k < 2; k++) {
-    KSPConvergedReason reason;
     PetscScalar *value;
     PetscCall(
         VecGetArrayWrite(u->b, &value)); /* rows of the cap sum to zero, those of held vertices say where they are */
     for (PetscInt v = 0; v < mesh->num_owned; v++) value[v] = u->cap[v] ? 0. : u->z[2 * v + k];
     PetscCall(VecRestoreArrayWrite(u->b, &value));
-    PetscCall(KSPSolve(u->ksp, u->b, u->x));
+    PetscCall(EqmLuSolve(u->lu, u->b, u->x));
     work->solves++;
-    PetscCall(KSPGetConvergedReason(u->ksp, &reason));
-    PetscCheck(reason > 0, mesh->comm, PETSC_ERR_NOT_CONVERGED,
-               "the mean-value system of the unfolding could not be solved: %s", KSPConvergedReasons[reason]);
     PetscCall(VecGetArray(u->x, &value));
     for (PetscInt v = 0; v < mesh->num_owned; v++) u->z[2 * v + k] = u->cap[v] ? value[v] : u->z[2 * v + k];
     PetscCall(VecRestoreArray(u->x, &value));
