@@ -72,6 +72,7 @@ typedef struct {
   PetscInt64 factorizations;         /* all numerical factorisations */
   PetscInt64 coupled_factorizations; /* those of matrices that couple the coordinates */
   PetscInt64 solves;                 /* right-hand sides solved */
+  PetscInt64 cg_iterations;          /* of iterative solves */
 } EqmWork;
 
 /* The run's book-keeping: clocks and counters. One per run, handed to everything that works. */

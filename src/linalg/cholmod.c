@@ -113,7 +113,7 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
+static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success)
 {
   Cholmod *const c = linear->data;
   const size_t n = (size_t)linear->num_unknowns;

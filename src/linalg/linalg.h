@@ -90,12 +90,19 @@ struct _p_EqmLinear {
   PetscBool coupled; /* counts as a coupled factorisation */
   PetscInt num_owned, num_unknowns;
   EqmUnknowns unknowns;
+  EqmUnknowns rows; /* of the matrix: the unknowns, unless the kind wants others */
   EqmAssembly assembly;
+  EqmCellMatrix cell_matrix, padded_cell; /* the caller's, during a filling; the kind's own over it, or NULL */
+  void *context;
+  PetscBool inexact;   /* an iteration may stop early */
+  PetscReal tolerance; /* of an iteration: residual over right-hand side, if inexact in the energy norm */
+  PetscInt num_fields;
   EqmEstimate estimate;
   void *data;
   PetscErrorCode (*analyse)(EqmLinear, EqmOrdering);
   PetscErrorCode (*factor)(EqmLinear, PetscBool *success);
-  PetscErrorCode (*solve)(EqmLinear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
+  PetscErrorCode (*set_fields)(EqmLinear, PetscInt count, const PetscReal *fields); /* may be NULL */
+  PetscErrorCode (*solve)(EqmLinear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success);
   PetscErrorCode (*destroy)(EqmLinear);
 };
 
@@ -110,6 +117,10 @@ PETSC_INTERN PetscErrorCode EqmLinearDestroy(EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context,
                                             PetscReal diagonal_factor, PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
+PETSC_INTERN PetscErrorCode EqmLinearTrySolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x,
+                                              PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmLinearSetInexact(EqmLinear linear, PetscReal tolerance);
+PETSC_INTERN PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count, const PetscReal *fields);
 
 /* The kinds fill in the operations. */
 PETSC_INTERN PetscErrorCode EqmLinearSetUpCholmod(EqmLinear linear);

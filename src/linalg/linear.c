@@ -6,6 +6,8 @@ const char *const EqmSolverKinds[] = {"auto",      "cholmod",       "substructur
 
 /* Larger fronts take half a gigabyte on one rank, and minutes that the other ranks wait. */
 enum { MOST_FRONT = 8000 };
+/* Relative residual of an iteration that stands for an exact solve. */
+static const PetscReal exact = 1e-10;
 static const PetscReal gib = 1024. * 1024. * 1024.;
 
 PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject)
@@ -46,10 +48,9 @@ static PetscErrorCode Try(EqmLinear linear, EqmOrdering ordering, EqmSolverKind 
   PetscFunctionBegin;
   linear->kind = kind;
   *e = (EqmEstimate){0};
-  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_ASSEMBLE));
-  PetscCall(EqmAssemblyCreate(linear->mesh, &linear->unknowns,
-                              kind == EQM_SOLVER_MULTIGRID ? EQM_STORE_FULL : EQM_STORE_LOWER, &linear->assembly));
-  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_ASSEMBLE));
+  linear->rows = linear->unknowns;
+  linear->padded_cell = NULL;
+  linear->set_fields = NULL;
   switch (kind) {
   case EQM_SOLVER_CHOLMOD:
     PetscCall(EqmLinearSetUpCholmod(linear));
@@ -63,6 +64,10 @@ static PetscErrorCode Try(EqmLinear linear, EqmOrdering ordering, EqmSolverKind 
   default:
     PetscCall(EqmLinearSetUpMultigrid(linear));
   }
+  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_ASSEMBLE));
+  PetscCall(EqmAssemblyCreate(linear->mesh, &linear->rows,
+                              kind == EQM_SOLVER_MULTIGRID ? EQM_STORE_FULL : EQM_STORE_LOWER, &linear->assembly));
+  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_ASSEMBLE));
   PetscCall(linear->analyse(linear, ordering));
   mine = e->bytes_on_rank;
   PetscCall(MPIU_Allreduce(&mine, &e->bytes, 1, MPIU_REAL, MPIU_SUM, linear->mesh->comm));
@@ -130,6 +135,7 @@ static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, PetscBool
   (*linear)->coupled = coupled;
   (*linear)->unknowns = *unknowns;
   (*linear)->num_owned = unknowns->num_owned;
+  (*linear)->tolerance = exact;
   PetscCall(MPIU_Allreduce(&unknowns->num_owned, &(*linear)->num_unknowns, 1, MPIU_INT, MPI_SUM, mesh->comm));
   PetscFunctionReturn(0);
 }
@@ -239,7 +245,12 @@ PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void
   Mat matrix;
 
   PetscFunctionBegin;
-  PetscCall(EqmAssemblyFill(linear->assembly, cell_matrix, context));
+  linear->cell_matrix = cell_matrix;
+  linear->context = context;
+  if (linear->padded_cell)
+    PetscCall(EqmAssemblyFill(linear->assembly, linear->padded_cell, linear));
+  else
+    PetscCall(EqmAssemblyFill(linear->assembly, cell_matrix, context));
   PetscCall(EqmAssemblyGetMat(linear->assembly, &matrix));
   if (diagonal_factor != 1.) PetscCall(ScaleDiagonal(matrix, diagonal_factor));
   PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
@@ -251,23 +262,59 @@ PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void
   PetscFunctionReturn(0);
 }
 
+/* Steps need no exact solutions: iterations may stop at this reduction of the error's estimate in the energy norm;
+   exact factors stay exact. For the factorisations to come. Not collective. */
+PetscErrorCode EqmLinearSetInexact(EqmLinear linear, PetscReal tolerance)
+{
+  PetscFunctionBegin;
+  linear->inexact = PETSC_TRUE;
+  linear->tolerance = tolerance;
+  PetscFunctionReturn(0);
+}
+
+/* Fields that the matrix hardly sees, columns of this rank's unknowns: coarse grids then hold them. For the
+   factorisations to come; exact factors need none. Collective. */
+PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count, const PetscReal *fields)
+{
+  PetscFunctionBegin;
+  if (linear->set_fields) PetscCall(linear->set_fields(linear, count, fields));
+  PetscFunctionReturn(0);
+}
+
 /* x = A^-1 b for several right-hand sides, stored one after the other, each of this rank's unknowns; x and b may be the
-   same array. A solution that is not finite is an error, never an answer. Collective. */
-PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
+   same array. `success` is false on every rank if an iteration has not come to its tolerance, which is how it finds
+   that a matrix is not definite. A solution that is not finite is an error, never an answer. Collective. */
+PetscErrorCode EqmLinearTrySolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x,
+                                 PetscBool *success)
 {
   EqmWork *work;
   PetscReal bad = 0., worst;
 
   PetscFunctionBegin;
+  *success = PETSC_TRUE;
   PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_SOLVE));
-  PetscCall(linear->solve(linear, num_rhs, b, x));
+  PetscCall(linear->solve(linear, num_rhs, b, x, success));
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_SOLVE));
   PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
   work->solves += num_rhs;
+  if (!*success) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < num_rhs * linear->num_owned; k++) {
     if (PetscIsInfOrNanReal(x[k])) bad = 1.;
   }
   PetscCall(MPIU_Allreduce(&bad, &worst, 1, MPIU_REAL, MPIU_MAX, linear->mesh->comm));
   PetscCheck(worst == 0., linear->mesh->comm, PETSC_ERR_FP, "the solution of a linear system is not finite");
+  PetscFunctionReturn(0);
+}
+
+/* The same where anything but a solution is an error. Collective. */
+PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
+{
+  PetscBool success;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLinearTrySolve(linear, num_rhs, b, x, &success));
+  PetscCheck(success, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
+             "multigrid did not converge: the matrix may not be definite; try -linear_solver %s",
+             linear->mesh->size == 1 ? "cholmod" : "mumps");
   PetscFunctionReturn(0);
 }

@@ -139,7 +139,7 @@ static PetscErrorCode Reserve(EqmLinear linear, PetscInt num_rhs)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
+static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success)
 {
   Mumps *const m = linear->data;
 

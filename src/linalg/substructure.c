@@ -505,7 +505,7 @@ static PetscErrorCode SolveBackward(EqmLinear linear, PetscInt num_rhs, PetscSca
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
+static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success)
 {
   Substructure *const s = linear->data;
   PetscScalar *edge;

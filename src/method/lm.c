@@ -15,6 +15,8 @@ enum { MOST_DAMPINGS = 8, MEMORY = 10 };
 /* Weighted by the residual, the metric fades by itself; below this its near-null directions would carry rounding, not
  * news. */
 static const PetscReal least_damping = 1e-2;
+/* Of steps by iteration: in the energy norm, which is the model's. Smaller ones gain nothing. */
+static const PetscReal inexact = 1e-2;
 
 /* Damping follows the length of the step that the search settled on; on the sphere in larger strides. Factors by trial.
  */
@@ -63,8 +65,8 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
     PetscBool success;
     PetscReal ratio, predicted;
     PetscCall(EqmLmFactor(solver, &success));
+    if (success) PetscCall(EqmLmSolveForStep(solver, &success));
     if (success) {
-      PetscCall(EqmLmSolveForStep(solver));
       PetscCall(EqmLmSolveForCurve(solver, &ratio));
       PetscCall(EqmLmPredictedDecrease(solver, &predicted));
       if (lm->epsilon > 0. && predicted <= 1e-12 * lm->now.objective) { /* what is left is rounding */
@@ -132,6 +134,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(EqmLinearDestroy(&solver->scalar)); /* the start's: a quarter of the memory, and of no more use */
   PetscCall(PetscFree(solver->scalar_count));
   PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, PETSC_TRUE, &lm->linear));
+  PetscCall(EqmLinearSetInexact(lm->linear, inexact));
   PetscCall(EqmLinearDescribe(lm->linear, solver->linear_solver, sizeof(solver->linear_solver)));
   PetscCall(TrialCreate(solver, &lm->now));
   PetscCall(TrialCreate(solver, &lm->best));

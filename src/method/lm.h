@@ -52,10 +52,12 @@ PETSC_INTERN PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial);
 PETSC_INTERN PetscErrorCode EqmLmGradient(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmLmLinearise(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmLmFactor(EqmSolver solver, PetscBool *success);
-PETSC_INTERN PetscErrorCode EqmLmSolveForStep(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmLmSolveForStep(EqmSolver solver, PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmLmSolveForCurve(EqmSolver solver, PetscReal *ratio);
 PETSC_INTERN PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease);
 PETSC_INTERN PetscErrorCode EqmLmApplyInverse(void *solver, Vec q);
+/* lm_fields.c */
+PETSC_INTERN PetscErrorCode EqmLmSetFields(EqmSolver solver);
 /* lm_search.c */
 PETSC_INTERN PetscErrorCode EqmLmSearch(EqmSolver solver, PetscReal ratio, PetscReal predicted, PetscReal *best_t);
 PETSC_INTERN PetscErrorCode EqmLmInnerSteps(EqmSolver solver);

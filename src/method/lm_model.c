@@ -139,8 +139,9 @@ static PetscErrorCode Norm(EqmMesh mesh, PetscInt n, const PetscReal *x, PetscRe
   PetscFunctionReturn(0);
 }
 
-/* d and y from the present factor. */
-PetscErrorCode EqmLmSolveForStep(EqmSolver solver)
+/* d and y from the present factor; `success` is false if an iteration finds the matrix not to be definite. Collective.
+ */
+PetscErrorCode EqmLmSolveForStep(EqmSolver solver, PetscBool *success)
 {
   EqmLm *const lm = solver->data;
   const PetscInt n = solver->domain->num_dofs, num_rhs = lm->epsilon > 0. ? 1 : 2;
@@ -156,7 +157,7 @@ PetscErrorCode EqmLmSolveForStep(EqmSolver solver)
   PetscCall(PetscArraycpy(columns + n, g, n));
   PetscCall(VecRestoreArrayRead(lm->descent, &b));
   PetscCall(VecRestoreArrayRead(lm->mean, &g));
-  PetscCall(EqmLinearSolve(lm->linear, num_rhs, columns, columns));
+  PetscCall(EqmLinearTrySolve(lm->linear, num_rhs, columns, columns, success));
   PetscCall(VecGetArrayWrite(lm->step, &d));
   PetscCall(VecGetArrayWrite(lm->solved_mean, &y));
   PetscCall(PetscArraycpy(d, columns, n));
@@ -292,6 +293,7 @@ PetscErrorCode EqmLmFactor(EqmSolver solver, PetscBool *success)
   EqmLm *const lm = solver->data;
 
   PetscFunctionBegin;
+  PetscCall(EqmLmSetFields(solver));
   PetscCall(EqmLinearFactor(lm->linear, CellMatrix, solver, 1. + (lm->epsilon > 0. ? 1e-11 : 1e-12), success));
   PetscFunctionReturn(0);
 }

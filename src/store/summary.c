@@ -149,6 +149,7 @@ static void AddCost(cJSON *root, EqmMap map)
   AddCount(group, "factorizations", map->work.factorizations);
   AddCount(group, "coupled_factorizations", map->work.coupled_factorizations);
   AddCount(group, "solves", map->work.solves);
+  AddCount(group, "cg_iterations", map->work.cg_iterations);
   group = cJSON_AddObjectToObject(root, "seconds");
   AddNumber(group, "total", map->total_seconds);
   for (int k = 0; k < EQM_NUM_PHASES; k++) AddNumber(group, phases[k].key, map->phase_seconds[phases[k].phase]);

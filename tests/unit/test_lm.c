@@ -204,7 +204,7 @@ static PetscErrorCode TestMatrix(EqmSolver solver)
   lm->mu = .03;
   PetscCall(EqmLmFactor(solver, &success));
   CHECK(success, "the matrix at the start is not definite");
-  PetscCall(EqmLmSolveForStep(solver)); /* makes the mean's term, too */
+  PetscCall(EqmLmSolveForStep(solver, &success)); /* makes the mean's term, too */
   for (int k = 0; k < 3; k++) {
     PetscCall(VecDuplicate(lm->descent, &b[k]));
     if (k < 2)
@@ -240,7 +240,7 @@ static PetscErrorCode TestBend(EqmSolver solver)
   PetscCall(PetscMalloc2(5 * m, &residual, m, &bend));
   if (lm->kappa > 0.) PetscCall(PetscMalloc2(5 * m, &lean, m, &lean_bend));
   PetscCall(EqmLmFactor(solver, &success));
-  PetscCall(EqmLmSolveForStep(solver));
+  PetscCall(EqmLmSolveForStep(solver, &success));
   PetscCall(EqmLmSolveForCurve(solver, &ratio));
   PetscCall(PetscArraycpy(bend, lm->bend, m)); /* evaluations use it as scratch */
   if (lean) PetscCall(PetscArraycpy(lean_bend, lm->lean_bend, m));
