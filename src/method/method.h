@@ -52,6 +52,12 @@ typedef struct {
   PetscInt lbfgs_refresh, lbfgs_memory;
   PetscEnum lbfgs_line_search; /* an EqmLbfgsLineSearch */
   PetscEnum rgd_line_search;   /* an EqmRgdLineSearch */
+  /* conformal: the Mobius map at the end */
+  PetscEnum moebius;
+  PetscBool has_fix, align_rigid;
+  PetscInt fix[3];
+  PetscReal fix_points[9];
+  char align[PETSC_MAX_PATH_LEN];
   /* euler-explicit, euler-implicit, qiem */
   PetscReal flow_step, flow_tol;
   PetscBool flow_moebius;

@@ -26,6 +26,10 @@ PETSC_INTERN PetscErrorCode EqmAngleWeights(EqmSolver solver, const PetscReal **
 /* Lumped weights of the vertices, which add up to one; made at the first need and kept. Collective. */
 PETSC_INTERN PetscErrorCode EqmVertexMass(EqmSolver solver, const PetscReal **mass);
 
+/* Options for it. Collective. */
+PETSC_INTERN PetscErrorCode EqmConformalAsk(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+/* The Mobius map after which the normalised authalic energy is least (src/method/moebius_area.c). Collective. */
+PETSC_INTERN PetscErrorCode EqmMoebiusLeastArea(EqmSolver solver, EqmPlace *place);
 /* The Mobius map that makes an angle-preserving map of a closed surface unique (src/method/normalise.c). Collective. */
 PETSC_INTERN PetscErrorCode EqmConformalFinish(EqmSolver solver);
 

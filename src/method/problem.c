@@ -65,6 +65,7 @@ static PetscErrorCode AskConformal(EqmSolver solver, PetscOptionItems *PetscOpti
   PetscFunctionBegin;
   solver->settings.lbfgs_memory = 8; /* the method's own options ask next and show this as their default */
   PetscCall(AskCenter(solver, PetscOptionsObject));
+  PetscCall(EqmConformalAsk(solver, PetscOptionsObject));
   PetscFunctionReturn(0);
 }
 
