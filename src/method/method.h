@@ -72,6 +72,7 @@ struct _p_EqmSolver {
   EqmOrdering ordering;
   EqmLinear scalar; /* one unknown per vertex: Laplacians of all kinds */
   unsigned char *scalar_count;
+  PetscBool holds_fixed_metric; /* `scalar` has the factor of the objective's fixed metric */
   char target[16];
   EqmSettings settings;
   const EqmProblem *problem;
@@ -166,9 +167,14 @@ PETSC_INTERN PetscErrorCode EqmStartFind(const EqmProblem *problem, const char *
 PETSC_INTERN PetscErrorCode EqmStartNames(EqmStartFamily family, char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmStart(EqmSolver solver);
 /* ---- first maps to the sphere (src/start/sphere.c) */
-/* Laplacian linearisation (001 section 6): one triangle pinned in the plane, the rest harmonic, onto the sphere.
- * Collective. */
-PETSC_INTERN PetscErrorCode EqmSphereLinear(EqmSolver solver);
+/* Laplacian linearisation (001 section 6): one triangle pinned in the plane, the rest harmonic, onto the sphere. With
+   `dipole` the triangle's places are sources instead, and the metric of the problem, which must be fixed, is factored
+   for that. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereLinear(EqmSolver solver, PetscBool dipole);
+/* L z = b, b zero but at three vertices (global numbers; two numbers each, which add up to zero); z two per local
+   vertex. Collective. */
+PETSC_INTERN PetscErrorCode EqmDipoleSolve(EqmSolver solver, const PetscInt corner[3], const PetscReal charge[6],
+                                           PetscReal *z);
 /* Tutte's map by two hemispheres (004 section 5.1), with equal weights; may fold along the equator. Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereTutte(EqmSolver solver);
 /* The Gauss map (004 Definition 5.1); with `steps` > 0 smoothed by as many steps of heat flow as it takes to lose its

@@ -103,9 +103,11 @@ static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
 /* Factor what belongs to the present map. */
 static PetscErrorCode Factor(EqmSolver solver, EqmMetric metric)
 {
+  const PetscBool fixed = solver->problem->objective->fixed_metric;
   PetscBool with_mass;
 
   PetscFunctionBegin;
+  if (fixed && solver->holds_fixed_metric) PetscFunctionReturn(0);
   PetscCall(solver->problem->objective->metric(solver, metric->weights, metric->mass, &with_mass));
   if (metric->gauss_newton) {
     GaussNewton gn = {solver, metric->weights};
@@ -113,6 +115,7 @@ static PetscErrorCode Factor(EqmSolver solver, EqmMetric metric)
   }
   PetscCall(EqmGroupFactorScaled(solver, metric->weights, metric->group, with_mass ? metric->mass : NULL,
                                  metric->gauss_newton ? 1.01 : 1.));
+  solver->holds_fixed_metric = fixed;
   PetscFunctionReturn(0);
 }
 

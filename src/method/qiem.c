@@ -270,6 +270,8 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   q->energy = energy;
   q->steps++;
   PetscCall(EqmPlaceCopy(solver->domain, &q->trial, &solver->place));
+  if (phase == 2) PetscCall(EqmSphereOrient(solver)); /* its matrix may mirror a map, which is as good */
+  PetscCall(EqmPlaceMakeFrames(solver->domain, &solver->place));
   PetscCall(phase == 1 ? AfterPhase1(solver, change) : AfterPhase2(solver, change));
   PetscCall(EqmFlowAccept(solver, &solver->place, dt));
   *outcome = EQM_STEP_TAKEN;

@@ -53,6 +53,7 @@ PetscErrorCode EqmGroupFactorScaled(EqmSolver solver, const PetscReal *weights, 
 
   PetscFunctionBegin;
   PetscCall(MakeScalar(solver));
+  solver->holds_fixed_metric = PETSC_FALSE;
   PetscCall(EqmLinearFactor(solver->scalar, CellLaplacian, &matrix, diagonal_factor, &success));
   if (!success) {
     EqmFail(solver->comm, EQM_ERR_MESH,

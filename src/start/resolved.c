@@ -96,7 +96,7 @@ PetscErrorCode EqmSphereResolved(EqmSolver solver)
   PetscCall(PetscMalloc2(n, &scale, 3 * n, &cotangents));
   PetscCall(EqmAngleWeights(solver, &weights));
   PetscCall(PetscArraycpy(cotangents, weights, 3 * n));
-  PetscCall(EqmSphereLinear(solver));
+  PetscCall(EqmSphereLinear(solver, PETSC_FALSE));
   PetscCall(ImproveByCaps(solver));
   PetscCall(FindScales(solver, scale));
   PetscCall(EqmSphereSmallestImage(solver, &smallest));

@@ -125,18 +125,15 @@ static void PinnedPlaces(const PetscReal position[9], PetscReal pinned[6])
   pinned[5] = -1. / depth;
 }
 
-PetscErrorCode EqmSphereLinear(EqmSolver solver)
+/* The places of the triangle's corners held, the others harmonic. */
+static PetscErrorCode SolvePinned(EqmSolver solver, const PetscInt corner[3], const PetscReal pinned[6], PetscReal *z)
 {
   const EqmMesh mesh = solver->mesh;
-  PetscInt corner[3];
   const PetscReal *weights;
-  PetscReal position[9], pinned[6], *z;
   signed char *group;
 
   PetscFunctionBegin;
-  PetscCall(MostRegularTriangle(mesh, corner, position));
-  PinnedPlaces(position, pinned);
-  PetscCall(PetscMalloc2(2 * mesh->num_local, &z, mesh->num_local, &group));
+  PetscCall(PetscMalloc1(mesh->num_local, &group));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     group[v] = 0;
     z[2 * v] = z[2 * v + 1] = 0.;
@@ -149,11 +146,29 @@ PetscErrorCode EqmSphereLinear(EqmSolver solver)
   }
   PetscCall(EqmAngleWeights(solver, &weights));
   PetscCall(EqmHeldSolve(solver, weights, group, 2, z));
+  PetscCall(PetscFree(group));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSphereLinear(EqmSolver solver, PetscBool dipole)
+{
+  const EqmMesh mesh = solver->mesh;
+  PetscInt corner[3];
+  PetscReal position[9], pinned[6], *z;
+
+  PetscFunctionBegin;
+  PetscCall(MostRegularTriangle(mesh, corner, position));
+  PinnedPlaces(position, pinned);
+  PetscCall(PetscMalloc1(2 * mesh->num_local, &z));
+  if (dipole)
+    PetscCall(EqmDipoleSolve(solver, corner, pinned, z));
+  else
+    PetscCall(SolvePinned(solver, corner, pinned, z));
   PetscCall(Center(mesh, z));
   PetscCall(DivideByMedian(mesh, z));
   ToSphere(mesh->num_local, 1., z, solver->place.x);
   PetscCall(EqmSphereOrient(solver));
-  PetscCall(PetscFree2(z, group));
+  PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
 }
 

@@ -213,7 +213,7 @@ static PetscErrorCode StartOnSphere(EqmSolver solver, const StartRow *row, Petsc
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
-  PetscCall(EqmSphereLinear(solver));
+  PetscCall(EqmSphereLinear(solver, PETSC_FALSE));
   if (row->guarded) {
     PetscCall(UnfoldedFixedPoint(solver, steps, weights));
   } else {
@@ -232,7 +232,7 @@ static PetscErrorCode StartDescending(EqmSolver solver, const StartRow *row, Pet
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
   PetscCall(EqmPlaceCreate(solver->domain, &last));
-  PetscCall(EqmSphereLinear(solver));
+  PetscCall(EqmSphereLinear(solver, PETSC_FALSE));
   PetscCall(EqmSolverLook(solver));
   for (PetscInt k = 0; k < steps; k++) {
     before = solver->totals.energy;
@@ -294,7 +294,7 @@ static PetscErrorCode StartResolved(EqmSolver solver, const StartRow *row, Petsc
 static PetscErrorCode StartConformal(EqmSolver solver, const StartRow *row, PetscInt steps)
 {
   PetscFunctionBegin;
-  PetscCall(EqmSphereLinear(solver));
+  PetscCall(EqmSphereLinear(solver, solver->problem->objective->fixed_metric));
   PetscCall(CenterStart(solver));
   PetscFunctionReturn(0);
 }
