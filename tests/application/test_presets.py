@@ -73,7 +73,7 @@ def main(equimap, ranks):
     known = set()
     for preset in sorted(CONFIG.glob("*/*.yaml")):  # of those with the same options, one is tried
         command, options = read_row(preset)
-        mesh = {"sphere": "head.obj", "ball": "ball.h5"}.get(command, "patch.obj")
+        mesh = {"sphere": "head.obj", "conformal": "head.obj", "ball": "ball.h5"}.get(command, "patch.obj")
         if (command, *options.items()) in known or ranks != "1":
             continue
         known.add((command, *options.items()))
