@@ -40,6 +40,24 @@ typedef struct {
   PetscReal seconds;       /* since the program's start */
 } EqmHistoryRow;
 
+/* An array that belongs to a result: rows dealt to the ranks in contiguous slabs. */
+typedef struct {
+  char path[128];               /* in the result file */
+  PetscInt total, start, count; /* rows of all ranks, this rank's first, this rank's */
+  PetscInt width;               /* entries per row; 0 makes the array one-dimensional */
+  PetscBool is_real;
+  PetscReal *reals;
+  PetscInt64 *integers;
+} EqmMapArray;
+
+/* A number or a text that belongs to a result. */
+typedef struct {
+  char key[96]; /* dots make groups in the summary: "landmarks.error.max" */
+  PetscBool is_text;
+  PetscReal value;
+  char text[PETSC_MAX_PATH_LEN];
+} EqmMapFigure;
+
 typedef struct _p_EqmMap *EqmMap;
 struct _p_EqmMap {
   EqmSoup soup;                /* the input mesh; referenced, not owned */
@@ -68,6 +86,9 @@ struct _p_EqmMap {
   EqmMap mended;          /* where the input was mended first: the map of the mended mesh; referenced, not owned */
   const PetscInt *parent; /* with `mended`: per cell of its soup's slab the input cell it comes from; referenced */
   EqmRepair repair;       /* with `mended`: what was mended */
+  PetscInt num_arrays, num_figures; /* what a command adds to the result */
+  EqmMapArray *arrays;
+  EqmMapFigure *figures;
 };
 
 PETSC_EXTERN PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map);
@@ -78,6 +99,15 @@ PETSC_EXTERN PetscErrorCode EqmMapDestroy(EqmMap *map);
    outlive the map, which writes them into a result file. Vertices that no cell uses stay at zero. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMapOntoInput(EqmMap mended, EqmSoup input, const PetscInt *parent,
                                             const PetscReal *cell_weight, EqmMap *map);
+
+/* Add an array to the result file (the map takes `values` over; PetscMalloc'ed, count * max(1, width)), or a figure to
+   the result file's attributes and the summary. Figures are the same on every rank. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmMapAddReals(EqmMap map, const char *path, PetscInt total, PetscInt start, PetscInt count,
+                                           PetscInt width, PetscReal *values);
+PETSC_EXTERN PetscErrorCode EqmMapAddIntegers(EqmMap map, const char *path, PetscInt total, PetscInt start,
+                                              PetscInt count, PetscInt width, PetscInt64 *values);
+PETSC_EXTERN PetscErrorCode EqmMapAddFigure(EqmMap map, const char *key, PetscReal value);
+PETSC_EXTERN PetscErrorCode EqmMapAddText(EqmMap map, const char *key, const char *text);
 
 /* Write a result: every name in the comma-separated `files`, format by suffix; .h5 holds everything and gets an .xmf
    beside it. tmp -> fsync -> rename; a file that was there survives a failure. Errors: EQM_ERR_USAGE (suffix),

@@ -127,6 +127,7 @@ PetscErrorCode EqmMeasureCorrespondence(EqmRegistration r)
     PetscCall(EqmMapCreate(r->b.soup, r->dim, &measured));
     PetscCall(EqmMapMeasure(measured, r->b.mesh, r->b.x));
     r->figures.folds_b = measured->distortion.folds;
+    r->figures.energy_b = measured->distortion.energy;
     PetscCall(EqmMapDestroy(&measured));
     PetscCall(Dissimilarity(r));
   }

@@ -140,6 +140,7 @@ PetscErrorCode EqmLandmarkErrors(EqmRegistration r)
   PetscCall(PetscArraycpy(q, r->goal, r->dim * num));
   if (on_b) PetscCall(GatherOnB(r, r->dim, r->b.x, q)); /* B may have moved */
   MeanAndMax(num, r->dim, p, q, 1., &f->landmark_mean, &f->landmark_max);
+  f->landmarks_in_space = on_b;
   if (on_b) {
     PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, 3, r->image, p));
     PetscCall(GatherOnB(r, 3, r->b.mesh->position, q));

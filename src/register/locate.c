@@ -62,7 +62,7 @@ PetscErrorCode EqmLocatorCreate(EqmMesh mesh, EqmImageKind kind, const PetscReal
   }
   for (PetscInt k = 0; k < 3 * cs * n; k++) extent = PetscMax(extent, PetscAbsReal(corner[k]));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &extent, 1, MPIU_REAL, MPIU_MAX, mesh->comm));
-  PetscCall(EqmTreeCreate(kind, cs, n, corner, label, 1e-14 * extent, &locator->tree));
+  PetscCall(EqmTreeCreate(kind, cs, n, corner, label, 1e-12 * extent, &locator->tree));
   PetscCall(ShareOutline(locator));
   *out = locator;
   PetscFunctionReturn(0);

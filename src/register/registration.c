@@ -3,6 +3,7 @@
 #include <string.h>
 
 static const char *const ways[] = {"direct", "midpoints", "EqmRegisterBy", "", NULL};
+static const char *const alignments[] = {"auto", "shape", "pose", "none", "EqmAlignment", "", NULL};
 static const char *const landmark_starts[] = {"flow", "rotation", "EqmLandmarkStart", "", NULL};
 static const char *const landmark_points[] = {"auto", "surface", "target", "EqmLandmarkPoints", "", NULL};
 
@@ -79,6 +80,12 @@ static PetscErrorCode Ask(EqmRegisterSettings *set, PetscOptionItems *PetscOptio
   PetscCall(PetscOptionsString("-map_a", "the map of A, made before, where A itself holds none", NULL, "", set->map_a,
                                sizeof(set->map_a), NULL));
   PetscCall(PetscOptionsString("-map_b", "the map of B", NULL, "", set->map_b, sizeof(set->map_b), NULL));
+  PetscCall(
+      PetscOptionsEnum("-align",
+                       "without landmarks, the rotation between the maps: pose, such that A and B correspond as "
+                       "they stand in space (003 section 7; not for disks); shape, such that A comes closest to B "
+                       "after a rigid motion; auto, the pose unless the shape is far better; none, as they are",
+                       NULL, alignments, (PetscEnum)set->align, (PetscEnum *)&set->align, NULL));
   PetscCall(AskLandmarks(set, PetscOptionsObject));
   PetscCall(PetscOptionsEnum("-register_by",
                              "direct: A's map goes to the landmarks of B; midpoints: both maps go half the way (001 "
@@ -199,10 +206,12 @@ PetscErrorCode EqmRegistrationSolve(EqmRegistration r)
     PetscCall(EqmAdapt(r));
   }
   if (r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
+  if (!r->landmarks.num && !r->bare) PetscCall(EqmAlign(r));
   PetscCall(EqmCompose(r));
   PetscCall(EqmMeasureCorrespondence(r));
   PetscCall(TakeRun(r));
   PetscCall(Judge(r));
+  PetscCall(EqmAddToResult(r));
   PetscFunctionReturn(0);
 }
 

@@ -7,6 +7,7 @@
 
 typedef enum { EQM_BY_DIRECT, EQM_BY_MIDPOINTS } EqmRegisterBy;
 typedef enum { EQM_LANDMARKS_FLOW, EQM_LANDMARKS_ROTATION } EqmLandmarkStart;
+typedef enum { EQM_ALIGN_AUTO, EQM_ALIGN_SHAPE, EQM_ALIGN_POSE, EQM_ALIGN_NONE } EqmAlignment;
 typedef enum { EQM_POINTS_AUTO, EQM_POINTS_SURFACE, EQM_POINTS_TARGET } EqmLandmarkPoints;
 
 typedef struct {
@@ -15,6 +16,7 @@ typedef struct {
   EqmRegisterBy by;
   EqmLandmarkStart start;
   EqmLandmarkPoints points;
+  EqmAlignment align;
   PetscReal weight, tolerance, reach;
   PetscInt stages;
 } EqmRegisterSettings;
@@ -37,10 +39,12 @@ typedef struct {
 /* What is measured of a correspondence. Lengths of the target in its own units (radius 1), lengths in space in radii of
    the disk, sphere or ball that has B's measure. */
 typedef struct {
-  PetscReal landmark_mean, landmark_max;             /* |h(f(p)) - g(q)| */
+  PetscReal landmark_mean, landmark_max; /* |h(f(p)) - g(q)| */
+  PetscBool landmarks_in_space;
   PetscReal landmark_space_mean, landmark_space_max; /* |phi(p) - q| */
   PetscReal start_left;                              /* what the landmarks' flow left over */
   PetscReal dissimilarity, dissimilarity_rigid;      /* d(phi) of 003 section 7; after the best rigid motion */
+  PetscReal energy_b;                                /* of g, where it was moved of h o g */
   PetscReal energy;                                  /* E of h o f */
   PetscInt64 folds_a, folds_b;                       /* of h o f and, where it was moved, of g */
 } EqmRegisterFigures;
@@ -84,8 +88,12 @@ PETSC_INTERN PetscErrorCode EqmLandmarkErrors(EqmRegistration r);
 /* ---- adapt.c */
 PETSC_INTERN PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmAdapt(EqmRegistration r);
+/* ---- align.c */
+PETSC_INTERN PetscErrorCode EqmAlign(EqmRegistration r);
 /* ---- compose.c */
 PETSC_INTERN PetscErrorCode EqmCompose(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmMeasureCorrespondence(EqmRegistration r);
+/* ---- output.c */
+PETSC_INTERN PetscErrorCode EqmAddToResult(EqmRegistration r);
 
 #endif

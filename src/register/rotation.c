@@ -50,6 +50,21 @@ static void LargestEigenvector(PetscReal a[N][N], PetscReal vector[N])
   for (PetscInt k = 0; k < N; k++) vector[k] = vectors[k][largest];
 }
 
+void EqmRotationOfQuaternion(const PetscReal q[4], PetscReal rotation[9])
+{
+  const PetscReal w = q[0], x = q[1], y = q[2], z = q[3];
+
+  rotation[0] = 1. - 2. * (y * y + z * z);
+  rotation[1] = 2. * (x * y - w * z);
+  rotation[2] = 2. * (x * z + w * y);
+  rotation[3] = 2. * (x * y + w * z);
+  rotation[4] = 1. - 2. * (x * x + z * z);
+  rotation[5] = 2. * (y * z - w * x);
+  rotation[6] = 2. * (x * z - w * y);
+  rotation[7] = 2. * (y * z + w * x);
+  rotation[8] = 1. - 2. * (x * x + y * y);
+}
+
 /* With the unit quaternion q for R, sum w q . R p = q^T K q, K made of the correlation (Horn; Davenport): its largest
    eigenvector is the answer, a rotation in every case. */
 static void BestInSpace(const PetscReal *c, PetscReal *rotation)
@@ -65,11 +80,7 @@ static void BestInSpace(const PetscReal *c, PetscReal *rotation)
   LargestEigenvector(k, q);
   for (PetscInt i = 0; i < N; i++) length += q[i] * q[i];
   for (PetscInt i = 0; i < N; i++) q[i] /= PetscSqrtReal(length);
-  const PetscReal w = q[0], x = q[1], y = q[2], z = q[3];
-  const PetscReal r[9] = {1. - 2. * (y * y + z * z), 2. * (x * y - w * z),      2. * (x * z + w * y),
-                          2. * (x * y + w * z),      1. - 2. * (x * x + z * z), 2. * (y * z - w * x),
-                          2. * (x * z - w * y),      2. * (y * z + w * x),      1. - 2. * (x * x + y * y)};
-  for (PetscInt i = 0; i < 9; i++) rotation[i] = r[i];
+  EqmRotationOfQuaternion(q, rotation);
 }
 
 PetscErrorCode EqmBestRotation(PetscInt dim, const PetscReal *correlation, PetscReal *rotation)

@@ -43,6 +43,7 @@ PetscErrorCode EqmMapDestroy(EqmMap *map)
   PetscCall(PetscFree((*map)->conformal_factor));
   PetscCall(PetscFree((*map)->history));
   PetscCall(PetscFree((*map)->hessian_eigenvalues));
+  PetscCall(EqmMapDropExtras(*map));
   PetscCall(PetscFree(*map));
   PetscFunctionReturn(0);
 }

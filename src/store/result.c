@@ -128,6 +128,13 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
   if (map->num_hessian_eigenvalues)
     PetscCall(EqmH5DeclareReals(h5, "/map/hessian_eigenvalues", map->num_hessian_eigenvalues, 0));
   if (map->mended) PetscCall(DeclareMended(h5, map->mended));
+  for (PetscInt k = 0; k < map->num_arrays; k++) {
+    const EqmMapArray *const array = &map->arrays[k];
+    if (array->is_real)
+      PetscCall(EqmH5DeclareReals(h5, array->path, array->total, array->width));
+    else
+      PetscCall(EqmH5DeclareIntegers(h5, array->path, array->total, array->width));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -156,6 +163,12 @@ static PetscErrorCode PutOutcome(EqmH5 h5, EqmMap map)
   for (int k = 0; k < LENGTH(map_reals); k++) {
     const PetscReal *value = (const PetscReal *)((const char *)map + map_reals[k].offset);
     PetscCall(EqmH5PutReal(h5, map_reals[k].path, *value));
+  }
+  for (PetscInt k = 0; k < map->num_figures; k++) {
+    if (map->figures[k].is_text)
+      PetscCall(EqmH5PutText(h5, map->figures[k].key, map->figures[k].text));
+    else
+      PetscCall(EqmH5PutReal(h5, map->figures[k].key, map->figures[k].value));
   }
   PetscFunctionReturn(0);
 }
@@ -229,6 +242,21 @@ static PetscErrorCode WriteHistory(EqmH5 h5, EqmMap map)
   PetscFunctionReturn(0);
 }
 
+/* What the command has added. */
+static PetscErrorCode WriteExtras(EqmH5 h5, EqmMap map)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < map->num_arrays; k++) {
+    const EqmMapArray *const array = &map->arrays[k];
+    const EqmSlab slab = {array->total, array->start, array->count, array->width};
+    if (array->is_real)
+      PetscCall(EqmH5WriteReals(h5, array->path, slab, array->reals));
+    else
+      PetscCall(EqmH5WriteIntegers(h5, array->path, slab, array->integers));
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
 {
   EqmSoup soup = map->soup;
@@ -245,6 +273,7 @@ static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
   if (map->num_hessian_eigenvalues)
     PetscCall(EqmH5WriteReals(h5, "/map/hessian_eigenvalues", HessianSlab(map, h5->rank), map->hessian_eigenvalues));
   if (map->mended) PetscCall(WriteMended(h5, map->mended, map->parent));
+  PetscCall(WriteExtras(h5, map));
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
 #include "store.h"
 #include "base/atomicfile.h"
 #include <cjson/cJSON.h>
+#include <string.h>
 #include <time.h>
 
 /* cJSON writes the shortest digits that bring back the same bits, and null for what is not a number. */
@@ -160,6 +161,25 @@ static void AddCost(cJSON *root, EqmMap map)
   AddCount(group, "total", map->memory_total);
 }
 
+/* What the command has added: dots in a key open groups. */
+static void AddFigure(cJSON *root, const EqmMapFigure *figure)
+{
+  const char *key = figure->key;
+  cJSON *group = root;
+
+  for (const char *dot = strchr(key, '.'); dot; dot = strchr(key, '.')) {
+    char name[sizeof(figure->key)];
+    (void)snprintf(name, sizeof(name), "%.*s", (int)(dot - key), key);
+    group = cJSON_GetObjectItemCaseSensitive(group, name) ? cJSON_GetObjectItemCaseSensitive(group, name)
+                                                          : cJSON_AddObjectToObject(group, name);
+    key = dot + 1;
+  }
+  if (figure->is_text)
+    AddText(group, key, figure->text);
+  else
+    AddNumber(group, key, figure->value);
+}
+
 static PetscErrorCode WriteOnRoot(EqmMap map, const char *name, char *message, size_t length)
 {
   cJSON *root = cJSON_CreateObject();
@@ -171,6 +191,7 @@ static PetscErrorCode WriteOnRoot(EqmMap map, const char *name, char *message, s
   if (map->mended) AddRepair(root, &map->repair);
   AddQuality(root, map);
   if (map->hessian_eigenvalues) AddHessian(root, map);
+  for (PetscInt k = 0; k < map->num_figures; k++) AddFigure(root, &map->figures[k]);
   AddCost(root, map);
   text = cJSON_Print(root);
   cJSON_Delete(root);

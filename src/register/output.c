@@ -1,0 +1,116 @@
+/* What a registration adds to the result: locations, inverse map, figures. */
+#include "register/registration.h"
+
+/* Values per owned vertex to the slab of the input numbering, as an array of the result; `fallback` for vertices of no
+   cell. */
+static PetscErrorCode AddReals(EqmRegistration r, const EqmSide *side, const char *path, PetscInt width,
+                               PetscReal fallback, const PetscReal *owned)
+{
+  const EqmSoup soup = side->soup;
+  const PetscInt count = soup->vertex_end - soup->vertex_start;
+  PetscReal *slab;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(width * count, &slab));
+  for (PetscInt k = 0; k < width * count; k++) slab[k] = fallback;
+  PetscCall(EqmMeshVerticesToInput(side->mesh, soup, width, owned, slab));
+  PetscCall(EqmMapAddReals(r->map, path, soup->num_vertices, soup->vertex_start, count, width == 1 ? 0 : width, slab));
+  PetscFunctionReturn(0);
+}
+
+/* Numbers of cells; they travel as reals, which hold them exactly. */
+static PetscErrorCode AddCells(EqmRegistration r, const EqmSide *side, const char *path, const PetscInt *owned)
+{
+  const EqmSoup soup = side->soup;
+  const PetscInt count = soup->vertex_end - soup->vertex_start;
+  PetscReal *numbers, *slab;
+  PetscInt64 *cells;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(side->mesh->num_owned, &numbers, count, &slab));
+  PetscCall(PetscMalloc1(count, &cells));
+  for (PetscInt v = 0; v < side->mesh->num_owned; v++) numbers[v] = owned[v];
+  for (PetscInt k = 0; k < count; k++) slab[k] = -1.;
+  PetscCall(EqmMeshVerticesToInput(side->mesh, soup, 1, numbers, slab));
+  for (PetscInt k = 0; k < count; k++) cells[k] = (PetscInt64)slab[k];
+  PetscCall(PetscFree2(numbers, slab));
+  PetscCall(EqmMapAddIntegers(r->map, path, soup->num_vertices, soup->vertex_start, count, 0, cells));
+  PetscFunctionReturn(0);
+}
+
+/* Cell, barycentric coordinates and distance of every vertex's point on the other mesh, under /GROUP. */
+static PetscErrorCode AddLocation(EqmRegistration r, const EqmSide *side, const char *group, EqmLocation location)
+{
+  char path[64];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/%s/cell", group));
+  PetscCall(AddCells(r, side, path, location->cell));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/%s/barycentric", group));
+  PetscCall(AddReals(r, side, path, location->cell_size, 0., location->barycentric));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/%s/distance", group));
+  PetscCall(AddReals(r, side, path, 1, 0., location->distance));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddLandmarkFigures(EqmRegistration r)
+{
+  const EqmRegisterFigures *const f = &r->figures;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMapAddFigure(r->map, "register.landmarks.count", (PetscReal)r->landmarks.num));
+  if (!r->landmarks.num) PetscFunctionReturn(0);
+  PetscCall(EqmMapAddFigure(r->map, "register.landmarks.error.mean", f->landmark_mean));
+  PetscCall(EqmMapAddFigure(r->map, "register.landmarks.error.max", f->landmark_max));
+  if (!f->landmarks_in_space) PetscFunctionReturn(0);
+  PetscCall(EqmMapAddFigure(r->map, "register.landmarks.space_error.mean", f->landmark_space_mean));
+  PetscCall(EqmMapAddFigure(r->map, "register.landmarks.space_error.max", f->landmark_space_max));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddClamped(EqmRegistration r, const char *name, EqmLocation location)
+{
+  char key[64];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(key, sizeof(key), "register.clamped.%s.count", name));
+  PetscCall(EqmMapAddFigure(r->map, key, (PetscReal)location->num_clamped));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "register.clamped.%s.most", name));
+  PetscCall(EqmMapAddFigure(r->map, key, location->most_distant));
+  PetscFunctionReturn(0);
+}
+
+/* Figures of B, and of how alike the two are. */
+static PetscErrorCode AddFiguresOfB(EqmRegistration r)
+{
+  const EqmRegisterFigures *const f = &r->figures;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMapAddText(r->map, "register.b.file", r->b.soup->file));
+  PetscCall(EqmMapAddFigure(r->map, "register.b.vertices", r->b.soup->num_vertices));
+  PetscCall(EqmMapAddFigure(r->map, "register.b.cells", r->b.soup->num_cells));
+  PetscCall(EqmMapAddFigure(r->map, "register.b.measure", r->b.map->distortion.mesh_measure));
+  PetscCall(EqmMapAddFigure(r->map, "register.b.energy", f->energy_b));
+  PetscCall(EqmMapAddFigure(r->map, "register.b.folds", (PetscReal)f->folds_b));
+  PetscCall(EqmMapAddFigure(r->map, "register.dissimilarity", f->dissimilarity));
+  PetscCall(EqmMapAddFigure(r->map, "register.dissimilarity_rigid", f->dissimilarity_rigid));
+  PetscCall(AddClamped(r, "forward", r->forward));
+  PetscCall(AddClamped(r, "inverse", r->inverse));
+  PetscFunctionReturn(0);
+}
+
+/* Everything but the map itself, for the result file and the summary. Collective. */
+PetscErrorCode EqmAddToResult(EqmRegistration r)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMapAddText(r->map, "register.target", r->target));
+  PetscCall(AddLandmarkFigures(r));
+  PetscCall(AddReals(r, &r->a, "/register/target", r->dim, 0., r->a.x));
+  if (r->bare) PetscFunctionReturn(0);
+  PetscCall(AddFiguresOfB(r));
+  PetscCall(AddLocation(r, &r->a, "register", r->forward));
+  PetscCall(AddReals(r, &r->b, "/inverse/coordinates", 3, 0., r->inverse_image));
+  PetscCall(AddReals(r, &r->b, "/inverse/target", r->dim, 0., r->b.x));
+  PetscCall(AddLocation(r, &r->b, "inverse", r->inverse));
+  PetscFunctionReturn(0);
+}
