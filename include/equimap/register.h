@@ -71,6 +71,9 @@ PETSC_EXTERN PetscErrorCode EqmRegistrationGetStatus(EqmRegistration registratio
 /* phi as a map of A: /map/coordinates are the points of B, three coordinates each (with B the target: of the target).
    Referenced, not to be destroyed. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationGetMap(EqmRegistration registration, EqmMap *map);
+/* With -frames, after the map has been written to `files` (as of EqmMapWrite): the time series beside the result file and
+   the frames as meshes. Errors: EQM_ERR_IO. Collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationWriteFrames(EqmRegistration registration, const char *files);
 /* Print the figures. Collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationView(EqmRegistration registration);
 /* Print (on rank 0) the options that EqmRegistrationSetFromOptions knows. Collective. */

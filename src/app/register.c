@@ -60,12 +60,16 @@ static PetscErrorCode CloseBooks(EqmLedger ledger, EqmMap map)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, EqmMap map)
+static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration)
 {
+  EqmMap map;
+
   PetscFunctionBegin;
+  PetscCall(EqmRegistrationGetMap(registration, &map));
   PetscCall(CloseBooks(ledger, map));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
   PetscCall(EqmMapWrite(map, options->output));
+  PetscCall(EqmRegistrationWriteFrames(registration, options->output));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
   PetscCall(CloseBooks(ledger, map));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));
@@ -99,10 +103,8 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
   if (*status == EQM_STATUS_STOPPED) {
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n", EqmStatusName(*status), message));
   } else {
-    PetscCall(EqmRegistrationGetMap(registration, &map));
-    PetscCall(Write(&options, ledger, map));
+    PetscCall(Write(&options, ledger, registration));
     PetscCall(EqmRegistrationView(registration));
-    *status = map->status;
   }
   PetscCall(EqmRegistrationDestroy(&registration));
   PetscCall(EqmLedgerDestroy(&ledger));

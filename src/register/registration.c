@@ -31,6 +31,8 @@ PetscErrorCode EqmRegistrationDestroy(EqmRegistration *registration)
   PetscFunctionBegin;
   if (!r) PetscFunctionReturn(0);
   PetscCall(EqmLandmarkListReset(&r->landmarks));
+  for (PetscInt k = 0; k < r->num_fields; k++) PetscCall(EqmFieldReset(&r->fields[k]));
+  PetscCall(PetscFree(r->fields));
   PetscCall(PetscFree(r->goal));
   PetscCall(PetscFree(r->image));
   PetscCall(PetscFree(r->inverse_image));
@@ -87,6 +89,15 @@ static PetscErrorCode Ask(EqmRegisterSettings *set, PetscOptionItems *PetscOptio
                        "after a rigid motion; auto, the pose unless the shape is far better; none, as they are",
                        NULL, alignments, (PetscEnum)set->align, (PetscEnum *)&set->align, NULL));
   PetscCall(AskLandmarks(set, PetscOptionsObject));
+  PetscCall(PetscOptionsString("-transfer",
+                               "fields to carry along, separated by commas: coordinates, a dataset of A's .h5 file "
+                               "(/vertex/ratio), a .csv file with a header and a row per vertex or cell; with b: in "
+                               "front, from B to A",
+                               NULL, "", set->transfer, sizeof(set->transfer), NULL));
+  PetscCall(PetscOptionsInt("-frames",
+                            "write so many frames of the straight way from A to its points on B: a time series "
+                            "OUT.morph.xmf for ParaView beside OUT.h5, and meshes OUT.frame000.obj, ...",
+                            NULL, set->frames, &set->frames, NULL));
   PetscCall(PetscOptionsEnum("-register_by",
                              "direct: A's map goes to the landmarks of B; midpoints: both maps go half the way (001 "
                              "section 6.6)",
@@ -107,6 +118,8 @@ PetscErrorCode EqmRegistrationSetFromOptions(EqmRegistration r)
     EqmFail(r->comm, EQM_ERR_USAGE, "-landmark_weight, -landmark_tol and -landmark_reach want numbers above 0");
   if (set->stages < 1)
     EqmFail(r->comm, EQM_ERR_USAGE, "-landmark_stages %" PetscInt_FMT ": give 1 or more", set->stages);
+  if (set->frames < 0 || set->frames == 1 || set->frames > 1000)
+    EqmFail(r->comm, EQM_ERR_USAGE, "-frames %" PetscInt_FMT ": give a number from 2 to 1000", set->frames);
   if (set->by == EQM_BY_MIDPOINTS && !set->has_landmarks)
     EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints wants -landmarks FILE");
   PetscFunctionReturn(0);
@@ -133,6 +146,7 @@ PetscErrorCode EqmRegistrationRead(EqmRegistration r, const char *file_a, const 
   if (r->set.has_landmarks)
     PetscCall(EqmLandmarkListRead(r->comm, r->set.landmarks, r->a.soup->num_vertices,
                                   r->bare ? -1 : r->b.soup->num_vertices, &r->landmarks));
+  PetscCall(EqmReadFields(r));
   if (r->bare && r->set.by == EQM_BY_MIDPOINTS)
     EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too, and the target does not move");
   PetscFunctionReturn(0);
@@ -212,6 +226,8 @@ PetscErrorCode EqmRegistrationSolve(EqmRegistration r)
   PetscCall(TakeRun(r));
   PetscCall(Judge(r));
   PetscCall(EqmAddToResult(r));
+  PetscCall(EqmTransferFields(r));
+  PetscCall(EqmAddFrames(r));
   PetscFunctionReturn(0);
 }
 
@@ -245,6 +261,10 @@ PetscErrorCode EqmRegistrationView(EqmRegistration r)
   if (r->landmarks.num)
     PetscCall(PetscPrintf(r->comm, "  landmarks     %" PetscInt_FMT ", error mean %.3e, max %.3e in the target\n",
                           r->landmarks.num, (double)f->landmark_mean, (double)f->landmark_max));
+  if (r->set.frames)
+    PetscCall(PetscPrintf(r->comm,
+                          "  frames        %" PetscInt_FMT ", at most %" PetscInt64_FMT " folded cells in one\n",
+                          r->set.frames, f->most_frame_folds));
   if (!r->bare) {
     PetscCall(PetscPrintf(r->comm, "  d(phi)        %.4e   after the best rigid motion %.4e (radii)\n",
                           (double)f->dissimilarity, (double)f->dissimilarity_rigid));

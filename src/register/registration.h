@@ -3,6 +3,7 @@
 #define EQM_REGISTRATION_H
 
 #include <equimap/register.h>
+#include "register/field.h"
 #include "register/landmark_list.h"
 
 typedef enum { EQM_BY_DIRECT, EQM_BY_MIDPOINTS } EqmRegisterBy;
@@ -11,14 +12,15 @@ typedef enum { EQM_ALIGN_AUTO, EQM_ALIGN_SHAPE, EQM_ALIGN_POSE, EQM_ALIGN_NONE }
 typedef enum { EQM_POINTS_AUTO, EQM_POINTS_SURFACE, EQM_POINTS_TARGET } EqmLandmarkPoints;
 
 typedef struct {
-  char landmarks[PETSC_MAX_PATH_LEN], map_a[PETSC_MAX_PATH_LEN], map_b[PETSC_MAX_PATH_LEN];
+  char landmarks[PETSC_MAX_PATH_LEN], map_a[PETSC_MAX_PATH_LEN], map_b[PETSC_MAX_PATH_LEN],
+      transfer[PETSC_MAX_PATH_LEN];
   PetscBool has_landmarks, quiet;
   EqmRegisterBy by;
   EqmLandmarkStart start;
   EqmLandmarkPoints points;
   EqmAlignment align;
   PetscReal weight, tolerance, reach;
-  PetscInt stages;
+  PetscInt stages, frames;
 } EqmRegisterSettings;
 
 /* -ratio_tol of the maps of surfaces unless the user has another. Maps that are composed need not be better than their
@@ -47,6 +49,7 @@ typedef struct {
   PetscReal energy_b;                                /* of g, where it was moved of h o g */
   PetscReal energy;                                  /* E of h o f */
   PetscInt64 folds_a, folds_b;                       /* of h o f and, where it was moved, of g */
+  PetscInt64 most_frame_folds;                       /* of a frame of the morph */
 } EqmRegisterFigures;
 
 struct _p_EqmRegistration {
@@ -59,8 +62,10 @@ struct _p_EqmRegistration {
   PetscBool bare; /* B is the target itself */
   EqmSide a, b;
   EqmLandmarkList landmarks;
-  PetscReal *goal;  /* dim per landmark: g(q) */
-  EqmLocation on_b; /* landmarks that are points of B's surface: where, asked by rank 0; else NULL */
+  PetscInt num_fields;
+  EqmCarriedField *fields; /* of -transfer */
+  PetscReal *goal;         /* dim per landmark: g(q) */
+  EqmLocation on_b;        /* landmarks that are points of B's surface: where, asked by rank 0; else NULL */
   EqmLocation forward, inverse;
   PetscReal *image, *inverse_image; /* phi per owned vertex of A, phi^-1 per owned vertex of B: three coordinates */
   EqmMap map;
@@ -93,6 +98,11 @@ PETSC_INTERN PetscErrorCode EqmAlign(EqmRegistration r);
 /* ---- compose.c */
 PETSC_INTERN PetscErrorCode EqmCompose(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmMeasureCorrespondence(EqmRegistration r);
+/* ---- transfer.c */
+PETSC_INTERN PetscErrorCode EqmReadFields(EqmRegistration r);
+PETSC_INTERN PetscErrorCode EqmTransferFields(EqmRegistration r);
+/* ---- frames.c */
+PETSC_INTERN PetscErrorCode EqmAddFrames(EqmRegistration r);
 /* ---- output.c */
 PETSC_INTERN PetscErrorCode EqmAddToResult(EqmRegistration r);
 

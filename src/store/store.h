@@ -7,6 +7,9 @@
 PETSC_INTERN PetscBool EqmHasSuffix(const char *name, const char *suffix);
 PETSC_INTERN PetscErrorCode EqmMapWriteResult(EqmMap map, const char *file);
 PETSC_INTERN PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file);
+/* Where frame number %d of a morph stands in the result file. */
+#define EQM_FRAME_PATH "/morph/frame_%03" PetscInt_FMT
+PETSC_INTERN PetscErrorCode EqmMapWriteMorph(EqmMap map, const char *result_file, PetscInt num_frames);
 PETSC_INTERN PetscErrorCode EqmMapDropExtras(EqmMap map);
 PETSC_INTERN PetscErrorCode EqmMapWriteImage(EqmMap map, const char *file);
 

@@ -58,7 +58,7 @@ static void Field(Writer *writer, const char *name, const char *center, const ch
   Close(writer);
 }
 
-/* The cells with their fields, at the points of one array. */
+/* The cells with their fields, at the points of one array; the grid is left open. */
 static void Grid(Writer *writer, const char *name, EqmSoup soup, const char *points, PetscInt dim)
 {
   char text[32];
@@ -83,10 +83,42 @@ static void Grid(Writer *writer, const char *name, EqmSoup soup, const char *poi
     Field(writer, "conformal_factor", "Node", "/vertex/conformal_factor", soup->num_vertices);
   }
   if (soup->density) Field(writer, "density", "Cell", "/cell/density", soup->num_cells);
+}
+
+/* The grids of a document. */
+typedef void (*Body)(Writer *writer, EqmMap map, PetscInt num_frames);
+
+static void MeshAndMap(Writer *writer, EqmMap map, PetscInt num_frames)
+{
+  (void)num_frames;
+  Grid(writer, "mesh", map->soup, "/mesh/vertices", 3);
+  Close(writer);
+  Grid(writer, "map", map->soup, "/map/coordinates", map->dim);
   Close(writer);
 }
 
-static PetscBool Compose(EqmMap map, const char *result, xmlBufferPtr buffer)
+/* A time series: the same cells at the points of one frame after the other. */
+static void Frames(Writer *writer, EqmMap map, PetscInt num_frames)
+{
+  char text[64];
+
+  Open(writer, "Grid");
+  Attribute(writer, "Name", "morph");
+  Attribute(writer, "GridType", "Collection");
+  Attribute(writer, "CollectionType", "Temporal");
+  for (PetscInt f = 0; f < num_frames; f++) {
+    (void)snprintf(text, sizeof(text), EQM_FRAME_PATH, f);
+    Grid(writer, "frame", map->soup, text, 3);
+    Open(writer, "Time");
+    (void)snprintf(text, sizeof(text), "%.17g", (double)f / (double)(num_frames - 1));
+    Attribute(writer, "Value", text);
+    Close(writer);
+    Close(writer);
+  }
+  Close(writer);
+}
+
+static PetscBool Compose(EqmMap map, const char *result, Body body, PetscInt num_frames, xmlBufferPtr buffer)
 {
   Writer writer = {xmlNewTextWriterMemory(buffer, 0), result, PETSC_TRUE};
 
@@ -96,14 +128,15 @@ static PetscBool Compose(EqmMap map, const char *result, xmlBufferPtr buffer)
   Open(&writer, "Xdmf");
   Attribute(&writer, "Version", "3.0");
   Open(&writer, "Domain");
-  Grid(&writer, "mesh", map->soup, "/mesh/vertices", 3);
-  Grid(&writer, "map", map->soup, "/map/coordinates", map->dim);
+  body(&writer, map, num_frames);
   Note(&writer, xmlTextWriterEndDocument(writer.xml));
   xmlFreeTextWriter(writer.xml);
   return writer.fine;
 }
 
-static PetscErrorCode WriteOnRoot(EqmMap map, const char *result_file, char *message, size_t length)
+/* NAME.h5 -> NAME`suffix`. */
+static PetscErrorCode WriteOnRoot(EqmMap map, const char *result_file, const char *suffix, Body body,
+                                  PetscInt num_frames, char *message, size_t length)
 {
   const char *slash = strrchr(result_file, '/');
   char name[PETSC_MAX_PATH_LEN];
@@ -111,9 +144,9 @@ static PetscErrorCode WriteOnRoot(EqmMap map, const char *result_file, char *mes
   PetscErrorCode error = EQM_ERR_IO;
   EqmAtomicFile file;
 
-  (void)snprintf(name, sizeof(name), "%.*s.xmf", (int)(strlen(result_file) - strlen(".h5")), result_file);
+  (void)snprintf(name, sizeof(name), "%.*s%s", (int)(strlen(result_file) - strlen(".h5")), result_file, suffix);
   (void)snprintf(message, length, "cannot write '%.1000s': out of memory", name);
-  if (buffer && Compose(map, slash ? slash + 1 : result_file, buffer)) {
+  if (buffer && Compose(map, slash ? slash + 1 : result_file, body, num_frames, buffer)) {
     error = EqmAtomicOpen(name, &file, message, length);
     if (!error) {
       EqmAtomicWrite(&file, xmlBufferContent(buffer), (size_t)xmlBufferLength(buffer));
@@ -124,9 +157,7 @@ static PetscErrorCode WriteOnRoot(EqmMap map, const char *result_file, char *mes
   return error;
 }
 
-/* Write NAME.xmf beside the result NAME.h5: the mesh and the map as two grids with their fields. Errors: EQM_ERR_IO on
-   all ranks. Collective; rank 0 writes. */
-PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file)
+static PetscErrorCode Write(EqmMap map, const char *result_file, const char *suffix, Body body, PetscInt num_frames)
 {
   char message[EQM_MESSAGE_MAX] = "";
   PetscErrorCode error = 0;
@@ -134,7 +165,25 @@ PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file)
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(map->soup->comm, &rank));
-  if (rank == 0) error = WriteOnRoot(map, result_file, message, sizeof(message));
+  if (rank == 0) error = WriteOnRoot(map, result_file, suffix, body, num_frames, message, sizeof(message));
   PetscCall(EqmAgree(map->soup->comm, error, message));
+  PetscFunctionReturn(0);
+}
+
+/* Write NAME.xmf beside the result NAME.h5: the mesh and the map as two grids with their fields. Errors: EQM_ERR_IO on
+   all ranks. Collective; rank 0 writes. */
+PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file)
+{
+  PetscFunctionBegin;
+  PetscCall(Write(map, result_file, ".xmf", MeshAndMap, 0));
+  PetscFunctionReturn(0);
+}
+
+/* Write NAME.morph.xmf beside the result NAME.h5: its frames as a time series from 0 to 1. Errors: EQM_ERR_IO on all
+   ranks. Collective; rank 0 writes. */
+PetscErrorCode EqmMapWriteMorph(EqmMap map, const char *result_file, PetscInt num_frames)
+{
+  PetscFunctionBegin;
+  PetscCall(Write(map, result_file, ".morph.xmf", Frames, num_frames));
   PetscFunctionReturn(0);
 }
