@@ -1,7 +1,7 @@
 /* The map h of the target to itself: a rotation, a flow, and the minimisation that makes the landmarks meet. */
 #include "register/registration.h"
 #include "register/closest.h"
-#include "register/flow.h"
+#include "register/landmark_flow.h"
 #include "register/rotation.h"
 #include "method/method.h"
 

@@ -1,11 +1,19 @@
 /* Landmarks from a CSV file. */
 #include "register/landmark_list.h"
 #include "register/table.h"
+#include <stdio.h>
 
-/* A whole number between 0 and count - 1? */
-static PetscBool IsVertex(PetscReal value, PetscInt count)
+/* A whole number between 0 and count - 1 is wanted. */
+static PetscErrorCode CheckVertex(MPI_Comm comm, const char *file, PetscInt landmark, PetscReal value, const char *name,
+                                  PetscInt count)
 {
-  return (PetscBool)(value >= 0. && value < count && value == PetscFloorReal(value));
+  char text[32];
+
+  PetscFunctionBegin;
+  if (value >= 0. && value < count && value == PetscFloorReal(value)) PetscFunctionReturn(0);
+  (void)snprintf(text, sizeof(text), "%g", (double)value);
+  EqmFail(comm, EQM_ERR_USAGE, "%s: landmark %" PetscInt_FMT " names vertex %s of %s, which has 0 to %" PetscInt_FMT,
+          file, landmark + 1, text, name, count - 1);
 }
 
 static PetscErrorCode CheckTwice(MPI_Comm comm, const char *file, const EqmLandmarkList *list)
@@ -35,12 +43,8 @@ static PetscErrorCode Take(MPI_Comm comm, const char *file, PetscInt count_a, Pe
   PetscCall(PetscMalloc1(list->width * list->num, &list->other));
   for (PetscInt i = 0; i < list->num; i++) {
     const PetscReal *const row = table->values + table->columns * i;
-    if (!IsVertex(row[0], count_a))
-      EqmFail(comm, EQM_ERR_USAGE, "%s: landmark %" PetscInt_FMT " names vertex %g of A, which has 0 to %" PetscInt_FMT,
-              file, i + 1, (double)row[0], count_a - 1);
-    if (list->width == 1 && count_b >= 0 && !IsVertex(row[1], count_b))
-      EqmFail(comm, EQM_ERR_USAGE, "%s: landmark %" PetscInt_FMT " names vertex %g of B, which has 0 to %" PetscInt_FMT,
-              file, i + 1, (double)row[1], count_b - 1);
+    PetscCall(CheckVertex(comm, file, i, row[0], "A", count_a));
+    if (list->width == 1 && count_b >= 0) PetscCall(CheckVertex(comm, file, i, row[1], "B", count_b));
     list->vertex[i] = (PetscInt)row[0];
     for (PetscInt k = 0; k < list->width; k++) list->other[list->width * i + k] = row[1 + k];
   }

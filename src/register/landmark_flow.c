@@ -3,12 +3,12 @@
    landmarks the one of least norm is taken, in the space of a smooth kernel k; it is a combination of the kernel's
    derivatives at the landmarks. In the disk k carries the factors 1 - |x|^2, so that psi is constant along the circle
    and nothing leaves. */
-#include "register/flow.h"
+#include "register/landmark_flow.h"
 #include "energy/kernel.h"
 #include <petscmat.h>
 
-enum { LEAST_STEPS = 8, CORRECTIONS = 4 };
-static const PetscReal step_length = .03; /* of a landmark, per step of the integration */
+enum { LEAST_STEPS = 12, CORRECTIONS = 4 };
+static const PetscReal step_length = .02; /* of a landmark, per step of the integration */
 
 typedef struct {
   PetscBool disk;

@@ -1,6 +1,6 @@
 /* Area-preserving flows that carry landmarks to their places. */
-#ifndef EQM_FLOW_H
-#define EQM_FLOW_H
+#ifndef EQM_LANDMARK_FLOW_H
+#define EQM_LANDMARK_FLOW_H
 
 #include <petscsys.h>
 

@@ -1,0 +1,219 @@
+"""equimap register as a user runs it: a copy that is turned and renumbered, a deformed copy with landmarks, spheres met half
+way, solids whose maps are given, fields carried along, frames; what it refuses.
+
+usage: python3 test_register.py EQUIMAP [RANKS]
+"""
+import json
+import os
+import sys
+import tempfile
+
+import h5py
+import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from program import Program  # noqa: E402
+
+
+def read_obj(path):
+    with open(path) as stream:
+        rows = [line.split() for line in stream]
+    vertices = [[float(word) for word in row[1:4]] for row in rows if row and row[0] == "v"]
+    cells = [[int(word.split("/")[0]) - 1 for word in row[1:4]] for row in rows if row and row[0] == "f"]
+    return numpy.array(vertices), numpy.array(cells)
+
+
+def write_obj(program, name, vertices, cells):
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in cells.tolist()]
+    program.write(name, "\n".join(lines) + "\n")
+
+
+def write_h5(program, name, vertices, cells, image=None):
+    with h5py.File(program.file(name), "w") as file:
+        file["/mesh/vertices"], file["/mesh/cells"] = vertices, cells.astype("int64")
+        if image is not None:
+            file["/map/coordinates"] = image
+
+
+def rotation(seed):
+    q, _ = numpy.linalg.qr(numpy.random.RandomState(seed).randn(3, 3))
+    return q * numpy.linalg.det(q)
+
+
+def renumber(vertices, cells, seed):
+    """The same mesh with vertices and cells renumbered and cells begun at other corners; the new numbers of the vertices."""
+    random = numpy.random.RandomState(seed)
+    place = random.permutation(len(vertices))
+    moved = numpy.empty_like(vertices)
+    moved[place] = vertices
+    return moved, numpy.array([numpy.roll(cell, random.randint(3)) for cell in place[cells[random.permutation(len(cells))]]]), place
+
+
+def generate(program, shape, count):
+    program.succeed("generate", shape, "-n", count, "-o", shape + ".obj", ranks=1)
+    return read_obj(program.file(shape + ".obj"))
+
+
+def run(program, *arguments, codes=(0,)):
+    result = program.succeed("register", *arguments, "-o", "out.h5", "-summary", "out.json", codes=codes)
+    summary = json.loads(program.read("out.json"))
+    assert summary["exit_code"] == result.returncode and summary["command"] == "register"
+    return summary, h5py.File(program.file("out.h5"), "r")
+
+
+def check_location(file, group, vertices_of, vertices, cells, points):
+    """Cell and barycentric coordinates lead to the points."""
+    cell, weight = file[f"/{group}/cell"][...], file[f"/{group}/barycentric"][...]
+    assert weight.shape == (vertices_of, cells.shape[1]) and weight.min() >= 0.0 and abs(weight.sum(axis=1) - 1.0).max() < 1e-12
+    assert abs((weight[:, :, None] * vertices[cells[cell]]).sum(axis=1) - points).max() < 1e-9
+
+
+def check_copy(program, shape, count):
+    """A turned and renumbered copy: every vertex finds its own."""
+    vertices, cells = generate(program, shape, count)
+    moved, other_cells, place = renumber(vertices @ rotation(5).T + 3.0, cells, 6)
+    write_obj(program, "copy.obj", moved, other_cells)
+    summary, file = run(program, shape + ".obj", "copy.obj", "-quiet", "-transfer", "coordinates,b:coordinates")
+    figures = summary["register"]
+    assert figures["dissimilarity_rigid"] < 1e-6 < 1e-2 < figures["dissimilarity"], figures
+    assert summary["folds"] == 0 and summary["ratio"]["sd"] < 1e-5
+    points = file["/map/coordinates"][...]
+    assert abs(points - moved[place]).max() < 1e-4, abs(points - moved[place]).max()
+    check_location(file, "register", len(vertices), moved, other_cells, points)
+    check_location(file, "inverse", len(vertices), vertices, cells, file["/inverse/coordinates"][...])
+    assert abs(file["/transfer/to_a/coordinates"][...] - points).max() < 1e-9
+    assert abs(file["/transfer/to_b/coordinates"][...] - file["/inverse/coordinates"][...]).max() < 1e-9
+    assert figures["transfer"]["to_b"]["coordinates"]["round_trip"] < 1e-5
+
+
+def deform(vertices):
+    size = numpy.ptp(vertices, axis=0).max()
+    x, y, _ = (vertices / size).T
+    return vertices + 0.08 * size * numpy.stack([numpy.sin(3 * y + 1), numpy.sin(3 * x), numpy.sin(2 * x + 3 * y)], axis=1)
+
+
+def check_landmarks(program):
+    """A smoothly deformed copy with twenty known pairs; a field of cells and one of vertices; frames; results as input."""
+    vertices, cells = generate(program, "hills", 1500)
+    deformed = deform(vertices)
+    write_obj(program, "deformed.obj", deformed, cells)
+    pairs = numpy.random.RandomState(1).choice(len(vertices), 20, replace=False)
+    program.write("pairs.csv", "a,b\n" + "".join(f"{i},{i}\n" for i in pairs))
+    program.write("height.csv", "height\n" + "".join(f"{z!r}\n" for z in vertices[:, 0].tolist()))
+    program.write("side.csv", "left,right\n" + "".join(f"{int(x < .5)},{int(x >= .5)}\n" for x in vertices[cells[:, 0], 0]))
+    summary, file = run(program, "hills.obj", "deformed.obj", "-landmarks", "pairs.csv", "-quiet", "-frames", 4,
+                        "-transfer", "height.csv,side.csv")
+    figures = summary["register"]
+    assert summary["folds"] == 0 and summary["energy"]["final"] < 1e-4
+    assert figures["landmarks"]["count"] == 20 and figures["landmarks"]["error"]["max"] <= 1e-3
+    points = file["/map/coordinates"][...]
+    assert abs(points[pairs] - deformed[pairs]).max() < 1e-2
+    assert numpy.linalg.norm(points - deformed, axis=1).mean() < .5 * numpy.linalg.norm(vertices - deformed, axis=1).mean()
+    side = file["/transfer/to_b/side"][...]
+    assert side.shape == (len(cells), 2) and set(numpy.unique(side)) == {0.0, 1.0} and (side.sum(axis=1) == 1.0).all()
+    assert (side[:, 0] == (vertices[cells[:, 0], 0] < .5)).mean() > .9
+    assert figures["transfer"]["to_b"]["height"]["round_trip"] < .02
+    assert sorted(figures["frames"]["folds"]) == ["000", "001", "002", "003"] and figures["frames"]["folds"]["000"] == 0
+    for frame in range(4):
+        t = frame / 3
+        frame_points = (1 - t) * vertices + t * points
+        assert abs(file[f"/morph/frame_{frame:03d}"][...] - frame_points).max() < 1e-12
+        written, written_cells = read_obj(program.file(f"out.frame{frame:03d}.obj"))
+        assert numpy.array_equal(written_cells, cells) and abs(written - frame_points).max() < 1e-12
+    series = program.read("out.morph.xmf").decode()
+    assert series.count("<Time ") == 4 and 'CollectionType="Temporal"' in series and "/morph/frame_003" in series
+    file.close()
+    program.succeed("disk", "hills.obj", "-o", "a.h5", "-quiet", "-ratio_tol", "3e-3")
+    program.succeed("disk", "deformed.obj", "-o", "b.h5", "-quiet", "-ratio_tol", "3e-3")
+    again, file = run(program, "a.h5", "b.h5", "-landmarks", "pairs.csv", "-quiet", "-landmark_start", "flow")
+    assert again["folds"] == 0 and again["register"]["landmarks"]["error"]["max"] <= 1e-3
+    assert numpy.linalg.norm(file["/map/coordinates"][...] - points, axis=1).mean() < .05
+    file.close()
+
+
+def check_sphere(program):
+    """Closed surfaces: the middles between the landmarks; points of the sphere itself; points of the surface."""
+    vertices, cells = generate(program, "head", 1000)
+    deformed = deform(vertices)
+    write_obj(program, "deformed.obj", deformed, cells)
+    chosen = numpy.random.RandomState(2).choice(len(vertices), 8, replace=False)
+    program.write("pairs.csv", "a,b\n" + "".join(f"{i},{i}\n" for i in chosen))
+    program.write("points.csv", "a,x,y,z\n" + "".join("%d,%r,%r,%r\n" % (i, *deformed[i].tolist()) for i in chosen))
+    for options in (["-register_by", "midpoints", "-landmarks", "pairs.csv"], ["-landmarks", "points.csv"]):
+        summary, file = run(program, "head.obj", "deformed.obj", "-quiet", *options)
+        figures = summary["register"]["landmarks"]
+        assert summary["folds"] == 0 and summary["register"]["b"]["folds"] == 0
+        assert figures["error"]["max"] <= 2e-3 and figures["space_error"]["max"] <= 2e-2, figures
+        check_location(file, "register", len(vertices), deformed, cells, file["/map/coordinates"][...])
+        file.close()
+    turned = numpy.roll(vertices[chosen] / numpy.linalg.norm(vertices[chosen], axis=1)[:, None], 1, axis=1)
+    program.write("target.csv", "a,x,y,z\n" + "".join("%d,%r,%r,%r\n" % (i, *p) for i, p in zip(chosen, turned.tolist())))
+    summary, file = run(program, "head.obj", "target", "-quiet", "-landmarks", "target.csv")
+    places = file["/map/coordinates"][...]
+    assert abs(numpy.linalg.norm(places, axis=1) - 1.0).max() < 1e-12 and summary["folds"] == 0
+    assert abs(places[chosen] - turned).max() <= 1e-3 and summary["register"]["landmarks"]["error"]["max"] <= 1e-3
+    file.close()
+
+
+def check_ball(program):
+    """Solids with maps from elsewhere: their rotation is found by the pose, and by the shape where the solid is turned."""
+    program.succeed("generate", "ball", "-n", 600, "-o", "ball.h5", ranks=1)
+    with h5py.File(program.file("ball.h5"), "r") as file:
+        vertices, cells = file["/mesh/vertices"][...], file["/mesh/cells"][...]
+    solid = vertices * [1.0, 1.3, 1.7] + 0.2 * vertices[:, [1, 2, 0]] ** 2
+    write_h5(program, "a.h5", solid, cells, vertices)
+    write_h5(program, "b.h5", solid, cells, vertices @ rotation(3).T)
+    summary, file = run(program, "a.h5", "b.h5", "-quiet")
+    assert summary["register"]["target"] == "ball" and summary["register"]["dissimilarity"] < 1e-9
+    assert abs(file["/map/coordinates"][...] - solid).max() < 1e-8 and summary["folds"] == 0
+    file.close()
+    turned = solid @ rotation(4).T
+    write_h5(program, "b.h5", turned, cells, vertices @ rotation(3).T)
+    summary, file = run(program, "a.h5", "b.h5", "-quiet", "-frames", 3)
+    assert summary["register"]["dissimilarity_rigid"] < 1e-6 and abs(file["/map/coordinates"][...] - turned).max() < 1e-5
+    assert os.path.exists(program.file("out.frame002.vtu"))
+    file.close()
+    summary, file = run(program, "a.h5", "b.h5", "-quiet", "-align", "pose")
+    assert summary["register"]["dissimilarity_rigid"] > 1e-2, "the pose of a turned solid is another one"
+    file.close()
+
+
+def check_refused(program):
+    """Mistakes are told in words and leave no result."""
+    generate(program, "hills", 300)
+    generate(program, "head", 300)
+    program.write("twice.csv", "a,b\n3,4\n3,5\n")
+    program.write("far.csv", "a,b\n3,99999\n")
+    program.write("words.csv", "a,b\n3,four\n")
+    program.write("headless.csv", "3,4\n")
+    for code, words, *arguments in (
+        (3, "do not correspond", "hills.obj", "head.obj"),
+        (2, "two meshes", "hills.obj"),
+        (2, "is a landmark twice", "hills.obj", "hills.obj", "-landmarks", "twice.csv"),
+        (2, "vertex 99999 of B", "hills.obj", "hills.obj", "-landmarks", "far.csv"),
+        (6, "line 2", "hills.obj", "hills.obj", "-landmarks", "words.csv"),
+        (6, "header", "hills.obj", "hills.obj", "-landmarks", "headless.csv"),
+        (6, "missing.csv", "hills.obj", "hills.obj", "-landmarks", "missing.csv"),
+        (2, "-transfer nothing", "hills.obj", "hills.obj", "-transfer", "nothing"),
+        (2, "midpoints", "hills.obj", "hills.obj", "-register_by", "midpoints"),
+        (2, "-frames 1", "hills.obj", "hills.obj", "-frames", 1),
+        (2, "a disk has no pose", "hills.obj", "hills.obj", "-align", "pose"),
+        (2, "unknown option", "hills.obj", "hills.obj", "-landmrks", "x"),
+    ):
+        result = program.run("register", *arguments, "-quiet", "-o", "refused.h5")
+        assert result.returncode == code, (arguments, result.returncode, result.stdout, result.stderr)
+        assert any(words in line for line in program.messages(result)), (arguments, result.stderr)
+        assert not os.path.exists(program.file("refused.h5"))
+
+
+def main():
+    equimap, ranks = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1
+    for check in (lambda p: check_copy(p, "hills", 1000), lambda p: check_copy(p, "head", 1000), check_landmarks, check_sphere, check_ball,
+                  check_refused):
+        with tempfile.TemporaryDirectory() as folder:
+            check(Program(equimap, ranks, folder))
+    print("equimap register: copies, landmarks, spheres, solids, fields, frames, refusals: fine")
+
+
+if __name__ == "__main__":
+    main()
