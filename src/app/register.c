@@ -83,7 +83,6 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
   RegisterOptions options = {0};
   EqmLedger ledger;
   EqmRegistration registration;
-  EqmMap map;
   const char *message;
 
   PetscFunctionBegin;
