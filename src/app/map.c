@@ -77,7 +77,11 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOption
   if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[0], options->summary));
   if (options->has_history) PetscCall(EqmCheckOutput(line->argument[0], options->history));
   if (options->has_histogram) PetscCall(EqmCheckOutput(line->argument[0], options->histogram));
-  if (options->has_checkpoint) PetscCall(EqmCheckOutput(line->argument[0], options->checkpoint));
+  if (!options->has_checkpoint) PetscFunctionReturn(0);
+  PetscCall(EqmCheckOutput(line->argument[0], options->checkpoint));
+  PetscCall(EqmSweepOutput(options->output));
+  if (options->has_summary) PetscCall(EqmSweepOutput(options->summary));
+  if (options->has_history) PetscCall(EqmSweepOutput(options->history));
   PetscFunctionReturn(0);
 }
 

@@ -46,3 +46,21 @@ PetscErrorCode EqmCheckOutput(const char *mesh, const char *files)
   if (!count) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-o, -summary, -history and -histogram want the name of a file");
   PetscFunctionReturn(0);
 }
+
+/* EqmSweepOutput - remove what a killed run has left behind of the comma-separated `files`. For runs with checkpoints,
+   which are killed and begun again, one at a time.
+
+   Collective on PETSC_COMM_WORLD; rank 0 looks. */
+PetscErrorCode EqmSweepOutput(const char *files)
+{
+  PetscMPIInt rank;
+  char **names;
+  int count;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCall(PetscStrToArray(files, ',', &count, &names));
+  for (int k = 0; k < count && rank == 0; k++) EqmAtomicSweep(names[k]);
+  PetscCall(PetscStrToArrayDestroy(count, names));
+  PetscFunctionReturn(0);
+}
