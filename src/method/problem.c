@@ -74,7 +74,8 @@ static PetscErrorCode AskBall(EqmSolver solver, PetscOptionItems *PetscOptionsOb
   EqmSettings *const set = &solver->settings;
 
   PetscFunctionBegin;
-  set->lbfgs_memory = 20; /* the methods' own options ask next and show these as their defaults */
+  set->boundary_max_it = 4; /* its last digits depend on the input's, which a long run would magnify */
+  set->lbfgs_memory = 20;   /* the methods' own options ask next and show these as their defaults */
   set->lbfgs_line_search = (PetscEnum)EQM_SEARCH_WOLFE;
   PetscCall(PetscOptionsBool("-anisotropic_scaling",
                              "start: turn and scale the solid to fill a cube, axis by axis, before its first map",
