@@ -131,6 +131,7 @@ static PetscErrorCode TakeEigenvalues(const MapOptions *options, EqmLedger ledge
 static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
 {
   const EqmDistortion *const d = &map->distortion;
+  const PetscBool is_solid = (PetscBool)(map->soup->cell_size == 4);
   MPI_Comm comm = PETSC_COMM_WORLD;
 
   PetscFunctionBegin;
@@ -142,10 +143,12 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
   if (options->input.quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(map->status), map->message));
   PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double)map->energy_final,
                         (double)map->energy_initial));
-  PetscCall(PetscPrintf(comm, "  area ratio    sd %.3e   min %.4f   median %.6f   max %.4f\n", (double)d->ratio.sd,
-                        (double)d->ratio.min, (double)d->ratio.p50, (double)d->ratio.max));
-  PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean,
-                        (double)d->angle_error.p50));
+  PetscCall(PetscPrintf(comm, "  %-12s  sd %.3e   min %.4f   median %.6f   max %.4f\n",
+                        is_solid ? "volume ratio" : "area ratio", (double)d->ratio.sd, (double)d->ratio.min,
+                        (double)d->ratio.p50, (double)d->ratio.max));
+  if (!is_solid)
+    PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean,
+                          (double)d->angle_error.p50));
   PetscCall(PetscPrintf(comm, "  folds         %" PetscInt64_FMT "\n", d->folds));
   PetscCall(PetscPrintf(comm,
                         "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT
