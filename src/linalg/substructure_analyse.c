@@ -1,0 +1,241 @@
+/* Symbolic work of substructuring (substructure.c says what it is). */
+#include "linalg/substructure.h"
+
+static PetscErrorCode CreateEdges(EqmLinear linear, const EqmSeparation *separation)
+{
+  EqmSubstructure *const s = linear->data;
+  const EqmUnknowns *const u = &linear->unknowns;
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < separation->num_separators; k++) n += u->count[separation->vertex[k]];
+  s->num_edge = n;
+  PetscCall(
+      PetscMalloc5(n, &s->edge_vertex, n, &s->edge_component, n, &s->edge_links, n, &s->edge_unknown, n, &s->shift));
+  n = 0;
+  for (PetscInt k = 0; k < separation->num_separators; k++) {
+    const PetscInt v = separation->vertex[k];
+    for (PetscInt c = 0; c < u->count[v]; c++, n++) {
+      s->edge_vertex[n] = v;
+      s->edge_component[n] = c;
+      s->edge_links[n] = separation->links[k];
+      s->edge_unknown[n] = u->start[v] + c;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Inner unknowns keep their order, so that sorted rows stay sorted. */
+static PetscErrorCode NumberOwned(EqmLinear linear, const EqmSeparation *separation)
+{
+  EqmSubstructure *const s = linear->data;
+  const EqmUnknowns *const u = &linear->unknowns;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(linear->num_owned, &s->local));
+  for (PetscInt i = 0; i < linear->num_owned; i++) s->local[i] = 0;
+  for (PetscInt k = 0; k < s->num_edge; k++) {
+    const PetscInt i = s->edge_unknown[k] - u->first;
+    if (i >= 0 && i < linear->num_owned) s->local[i] = 1;
+  }
+  s->num_inner = 0;
+  for (PetscInt i = 0; i < linear->num_owned; i++) s->local[i] = s->local[i] ? -1 : s->num_inner++;
+  for (PetscInt k = 0; k < s->num_edge; k++) {
+    const PetscInt i = s->edge_unknown[k] - u->first;
+    if (i >= 0 && i < linear->num_owned) s->local[i] = s->num_inner + k;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* This rank's number of the column of an entry. */
+static PetscErrorCode LocalColumn(const EqmSubstructure *s, const EqmBlocks *blocks, int block, PetscInt column,
+                                  PetscInt *local)
+{
+  PetscInt place;
+
+  PetscFunctionBegin;
+  if (block == 0) {
+    *local = s->local[column];
+  } else {
+    PetscCall(PetscFindInt(blocks->global_column[column], s->num_edge, s->edge_unknown, &place));
+    PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a column of another rank is no separator's");
+    *local = s->num_inner + place;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Go through the stored entries: count them (`next` NULL) or put them in their place. */
+static PetscErrorCode PlaceEntries(EqmLinear linear, const EqmBlocks *blocks, PetscInt *count, PetscInt *next)
+{
+  EqmSubstructure *const s = linear->data;
+  const PetscInt first_edge = s->num_inner;
+  PetscInt *const column = s->matrix.i;
+
+  PetscFunctionBegin;
+  s->num_direct = 0;
+  for (PetscInt i = 0; i < linear->num_owned; i++) {
+    for (int block = 0; block < 2 && blocks->block[block]; block++) {
+      for (PetscInt q = blocks->start[block][i]; q < blocks->start[block][i + 1]; q++) {
+        const PetscInt source = block == 0 ? q : -1 - q;
+        PetscInt a = s->local[i], b;
+        PetscCall(LocalColumn(s, blocks, block, blocks->column[block][q], &b));
+        if (a >= first_edge && b >= first_edge) {
+          if (next) {
+            s->direct[3 * s->num_direct] = source;
+            s->direct[3 * s->num_direct + 1] = a - first_edge;
+            s->direct[3 * s->num_direct + 2] = b - first_edge;
+          }
+          s->num_direct++;
+          continue;
+        }
+        if (!next) {
+          count[PetscMax(a, b)]++;
+          continue;
+        }
+        const PetscInt place = next[PetscMax(a, b)]++;
+        column[place] = PetscMin(a, b);
+        s->source[place] = source;
+      }
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The rank's matrix by rows, lower triangle, with room for D. */
+static PetscErrorCode MakePattern(EqmLinear linear)
+{
+  EqmSubstructure *const s = linear->data;
+  const PetscInt n = s->num_inner + s->num_edge;
+  PetscInt *start, *next;
+  EqmBlocks blocks;
+  Mat matrix;
+
+  PetscFunctionBegin;
+  PetscCall(EqmAssemblyGetMat(linear->assembly, &matrix));
+  PetscCall(EqmBlocksGet(matrix, &blocks));
+  PetscCall(PetscCalloc1(n + 1, &start));
+  PetscCall(PlaceEntries(linear, &blocks, start + 1, NULL));
+  for (PetscInt i = 0; i < n; i++) start[i + 1] += start[i] + (i >= s->num_inner);
+  s->matrix = (cholmod_sparse){.nrow = (size_t)n,
+                               .ncol = (size_t)n,
+                               .nzmax = (size_t)start[n],
+                               .p = start,
+                               .stype = 1,
+                               .itype = s->common.itype,
+                               .xtype = CHOLMOD_REAL,
+                               .dtype = CHOLMOD_DOUBLE,
+                               .sorted = 1,
+                               .packed = 1};
+  PetscCall(PetscMalloc1(start[n], (PetscInt **)&s->matrix.i));
+  PetscCall(PetscMalloc1(start[n], (PetscScalar **)&s->matrix.x));
+  PetscCall(PetscMalloc1(start[n], &s->source));
+  PetscCall(PetscMalloc1(3 * s->num_direct, &s->direct));
+  PetscCall(PetscMalloc1(n, &next));
+  PetscCall(PetscArraycpy(next, start, n));
+  PetscCall(PlaceEntries(linear, &blocks, NULL, next));
+  for (PetscInt k = s->num_inner; k < n; k++) ((PetscInt *)s->matrix.i)[next[k]] = k;
+  PetscCall(PetscFree(next));
+  PetscCall(EqmBlocksRestore(&blocks));
+  PetscFunctionReturn(0);
+}
+
+/* Symbolic factor: inner vertices by nested dissection, then the separators. */
+static PetscErrorCode AnalyseInner(EqmLinear linear, const EqmSeparation *separation)
+{
+  EqmSubstructure *const s = linear->data;
+  const EqmUnknowns *const u = &linear->unknowns;
+  const PetscInt n = s->num_inner + s->num_edge;
+  PetscInt *order, count = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &s->position));
+  for (PetscInt k = 0; k < n; k++) s->position[k] = k;
+  if (s->num_inner > 0) {
+    PetscCall(PetscMalloc1(n, &order));
+    for (PetscInt k = 0; k < separation->num_inner; k++) {
+      const PetscInt v = separation->inner[k];
+      for (PetscInt c = 0; c < u->count[v]; c++) order[count++] = s->local[u->start[v] - u->first + c];
+    }
+    for (PetscInt k = s->num_inner; k < n; k++) order[count++] = k;
+    s->common.nmethods = 1;
+    s->common.method[0].ordering = CHOLMOD_GIVEN;
+    s->factor = CHOLMOD(analyze_p)(&s->matrix, order, NULL, 0, &s->common);
+    PetscCall(PetscFree(order));
+    for (PetscInt k = 0; s->factor && k < n; k++) s->position[((PetscInt *)s->factor->Perm)[k]] = k;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The separators' order of elimination, and with it their tree of fronts. */
+static PetscErrorCode CreateInterface(EqmLinear linear, const EqmSeparation *separation)
+{
+  EqmSubstructure *const s = linear->data;
+  const PetscInt n = s->num_edge;
+  PetscInt *position, *edge, *unknown, *span, *of_edge, count = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc5(n, &position, n, &edge, n, &unknown, 2 * n, &span, n, &of_edge));
+  for (PetscInt k = 0; k < separation->num_separators; k++) {
+    for (PetscInt c = 0; c < linear->unknowns.count[separation->vertex[k]]; c++) of_edge[count++] = k;
+  }
+  for (PetscInt k = 0; k < n; k++) {
+    position[k] = s->position[s->num_inner + k];
+    edge[k] = k;
+  }
+  PetscCall(PetscSortIntWithArray(n, position, edge));
+  PetscCall(PetscMalloc1(n, &s->place));
+  PetscCall(PetscMalloc1(s->num_inner + n, &s->corner_at));
+  for (PetscInt k = 0; k < s->num_inner + n; k++) s->corner_at[k] = -1;
+  for (PetscInt k = 0; k < n; k++) {
+    s->place[edge[k]] = s->corner_at[position[k]] = k;
+    unknown[k] = s->edge_unknown[edge[k]];
+    span[2 * k] = separation->span[2 * of_edge[edge[k]]];
+    span[2 * k + 1] = separation->span[2 * of_edge[edge[k]] + 1];
+  }
+  PetscCall(EqmInterfaceCreate(linear->mesh->comm, n, unknown, span, &s->interface));
+  PetscCall(PetscFree5(position, edge, unknown, span, of_edge));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSubstructureAgree(EqmLinear linear, const char *what)
+{
+  EqmSubstructure *const s = linear->data;
+  char message[EQM_MESSAGE_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(
+      PetscSNPrintf(message, sizeof(message),
+                    "CHOLMOD's %s failed on rank %d (status %d): too little memory for its share of the mesh; use "
+                    "more ranks or nodes",
+                    what, linear->mesh->rank, s->common.status));
+  PetscCall(EqmAgree(linear->mesh->comm, s->common.status < 0 ? PETSC_ERR_MEM : 0, message));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSubstructureAnalyse(EqmLinear linear, EqmOrdering ordering)
+{
+  EqmSubstructure *const s = linear->data;
+  EqmEstimate *const e = &linear->estimate;
+  const EqmSeparation *separation;
+  PetscReal local[2], sum[2], bytes, flops;
+
+  PetscFunctionBegin;
+  PetscCall(EqmOrderingGetSeparation(ordering, &separation));
+  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
+  PetscCall(CreateEdges(linear, separation));
+  PetscCall(NumberOwned(linear, separation));
+  PetscCall(MakePattern(linear));
+  PetscCall(AnalyseInner(linear, separation));
+  PetscCall(EqmSubstructureAgree(linear, "analysis"));
+  PetscCall(CreateInterface(linear, separation));
+  PetscCall(EqmInterfaceGetCost(s->interface, &e->largest_front, &bytes, &flops));
+  if (s->factor) EqmEstimateCholmod(s->factor, &s->common, e);
+  local[0] = e->nonzeros;
+  local[1] = e->flops + flops;
+  PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPIU_SUM, linear->mesh->comm));
+  e->nonzeros = sum[0];
+  e->flops = sum[1];
+  e->bytes_on_rank += bytes + (PetscReal)sizeof(PetscScalar) * PetscSqr((PetscReal)s->num_edge);
+  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
+  PetscFunctionReturn(0);
+}
