@@ -100,4 +100,25 @@ PETSC_EXTERN PetscErrorCode EqmSurfaceToSolid(EqmSurface surface, PetscInt width
 PETSC_EXTERN PetscErrorCode EqmSurfaceFromSolid(EqmSurface surface, PetscInt width, const PetscReal *local,
                                                 PetscReal *slab);
 
+/* The double covering of a surface with a boundary, as a mesh of its own: the surface and its mirror image, glued along
+   the boundary. */
+typedef struct _p_EqmDouble *EqmDouble;
+struct _p_EqmDouble {
+  EqmSoup soup;           /* closed; the same for any number of ranks */
+  PetscSF original, twin; /* roots: the vertices of the soup's slab; leaves: the surface's owned vertices */
+};
+
+/* The double covering of a mesh of triangles (004 section 2.2). Errors: EQM_ERR_USAGE (a solid, a closed surface).
+   Collective. */
+PETSC_EXTERN PetscErrorCode EqmDoubleCreate(EqmMesh surface, EqmDouble *covering);
+PETSC_EXTERN PetscErrorCode EqmDoubleDestroy(EqmDouble *covering);
+/* Put `width` reals per owned vertex of the surface, one for it and one for its twin, on the covering's slab; boundary
+   vertices, which are their own twins, get the first. Collective. */
+PETSC_EXTERN PetscErrorCode EqmDoubleFromHalves(EqmDouble covering, PetscInt width, const PetscReal *original,
+                                                const PetscReal *twin, PetscReal *slab);
+/* Carry `width` reals per vertex of the covering's slab to the surface's owned vertices: those of the original half.
+   Collective. */
+PETSC_EXTERN PetscErrorCode EqmDoubleToOriginal(EqmDouble covering, PetscInt width, const PetscReal *slab,
+                                                PetscReal *owned);
+
 #endif

@@ -23,6 +23,8 @@ typedef enum { EQM_TO_SLAB, EQM_FROM_SLAB } EqmDirection;
 
 PETSC_INTERN PetscErrorCode EqmMoveReals(PetscSF sf, PetscInt width, EqmDirection direction, PetscReal *slab,
                                          PetscReal *leaves);
+PETSC_INTERN PetscErrorCode EqmMeshNumberInOrder(EqmMesh mesh, PetscInt num_leaves, const PetscInt *leaf,
+                                                 PetscInt *number);
 PETSC_INTERN PetscErrorCode EqmSoupComputeChecksum(EqmSoup soup);
 PETSC_INTERN PetscErrorCode EqmSoupComputeIdentity(EqmSoup soup, PetscInt64 *identity);
 PETSC_INTERN PetscErrorCode EqmStarsCollect(EqmSoup soup, const PetscInt *owner_of_slab, EqmStars *stars);

@@ -79,3 +79,50 @@ PetscErrorCode EqmMeshFindVertices(EqmMesh mesh, PetscInt num, const PetscInt *i
   PetscCall(PetscFree2(sorted, vertex));
   PetscFunctionReturn(0);
 }
+
+/* Input numbers of all local vertices. */
+static PetscErrorCode InputNumbers(EqmMesh mesh, PetscInt *input)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(input, mesh->vertex_input, mesh->num_owned));
+  PetscCall(PetscSFBcastBegin(mesh->halo, MPIU_INT, input, input + mesh->num_owned, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(mesh->halo, MPIU_INT, input, input + mesh->num_owned, MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+/* Count those vertices that are leaves on some rank in input order, which no distribution changes: even shares of the
+   input's numbers are ticked off, counted and asked again. leaf - local vertices, number - what they get. Collective.
+ */
+PetscErrorCode EqmMeshNumberInOrder(EqmMesh mesh, PetscInt num_leaves, const PetscInt *leaf, PetscInt *number)
+{
+  PetscInt *input, *root, *count_of, count = 0, first = 0;
+  PetscLayout layout;
+  PetscSF directory;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(mesh->num_local, &input, num_leaves, &root));
+  PetscCall(InputNumbers(mesh, input));
+  for (PetscInt k = 0; k < num_leaves; k++) {
+    root[k] = input[leaf[k]];
+    number[k] = 1;
+  }
+  PetscCall(PetscLayoutCreateFromSizes(mesh->comm, PETSC_DECIDE, mesh->soup_vertices, 1, &layout));
+  PetscCall(PetscSFCreate(mesh->comm, &directory));
+  PetscCall(PetscSFSetGraphLayout(directory, layout, num_leaves, NULL, PETSC_OWN_POINTER, root));
+  PetscCall(PetscCalloc1(layout->n, &count_of));
+  PetscCall(PetscSFReduceBegin(directory, MPIU_INT, number, count_of, MPI_REPLACE));
+  PetscCall(PetscSFReduceEnd(directory, MPIU_INT, number, count_of, MPI_REPLACE));
+  for (PetscInt i = 0; i < layout->n; i++) count += count_of[i];
+  PetscCallMPI(MPI_Exscan(&count, &first, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  if (mesh->rank == 0) first = 0;
+  for (PetscInt i = 0; i < layout->n; i++) {
+    if (count_of[i]) count_of[i] = first++;
+  }
+  PetscCall(PetscSFBcastBegin(directory, MPIU_INT, count_of, number, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(directory, MPIU_INT, count_of, number, MPI_REPLACE));
+  PetscCall(PetscSFDestroy(&directory));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscCall(PetscFree(count_of));
+  PetscCall(PetscFree2(input, root));
+  PetscFunctionReturn(0);
+}

@@ -10,53 +10,16 @@ typedef struct {
   PetscInt *number;    /* their numbers on the surface */
 } Numbering;
 
-/* Input numbers of all local vertices of the solid. */
-static PetscErrorCode InputNumbers(EqmMesh solid, PetscInt *input)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(input, solid->vertex_input, solid->num_owned));
-  PetscCall(PetscSFBcastBegin(solid->halo, MPIU_INT, input, input + solid->num_owned, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(solid->halo, MPIU_INT, input, input + solid->num_owned, MPI_REPLACE));
-  PetscFunctionReturn(0);
-}
-
-/* Count the boundary vertices in input order, which no distribution changes: even shares of the input's numbers are
-   ticked off, counted and asked again. */
+/* Number the boundary vertices in input order, which no distribution changes. */
 static PetscErrorCode NumberVertices(EqmMesh solid, Numbering *numbering)
 {
-  PetscInt *input, *number, count = 0, first = 0;
-  PetscLayout layout;
-  PetscSF directory;
-
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(solid->num_local, &input));
-  PetscCall(InputNumbers(solid, input));
   for (PetscInt v = 0; v < solid->num_local; v++) numbering->num_leaves += solid->on_boundary[v];
   PetscCall(PetscMalloc2(numbering->num_leaves, &numbering->leaf, numbering->num_leaves, &numbering->number));
   for (PetscInt v = 0, k = 0; v < solid->num_local; v++) {
-    if (!solid->on_boundary[v]) continue;
-    numbering->leaf[k] = v;
-    numbering->number[k] = 1;
-    input[k++] = input[v];
+    if (solid->on_boundary[v]) numbering->leaf[k++] = v;
   }
-  PetscCall(PetscLayoutCreateFromSizes(solid->comm, PETSC_DECIDE, solid->soup_vertices, 1, &layout));
-  PetscCall(PetscSFCreate(solid->comm, &directory));
-  PetscCall(PetscSFSetGraphLayout(directory, layout, numbering->num_leaves, NULL, PETSC_OWN_POINTER, input));
-  PetscCall(PetscCalloc1(layout->n, &number));
-  PetscCall(PetscSFReduceBegin(directory, MPIU_INT, numbering->number, number, MPI_REPLACE));
-  PetscCall(PetscSFReduceEnd(directory, MPIU_INT, numbering->number, number, MPI_REPLACE));
-  for (PetscInt i = 0; i < layout->n; i++) count += number[i];
-  PetscCallMPI(MPI_Exscan(&count, &first, 1, MPIU_INT, MPI_SUM, solid->comm));
-  if (solid->rank == 0) first = 0;
-  for (PetscInt i = 0; i < layout->n; i++) {
-    if (number[i]) number[i] = first++;
-  }
-  PetscCall(PetscSFBcastBegin(directory, MPIU_INT, number, numbering->number, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(directory, MPIU_INT, number, numbering->number, MPI_REPLACE));
-  PetscCall(PetscSFDestroy(&directory));
-  PetscCall(PetscLayoutDestroy(&layout));
-  PetscCall(PetscFree(number));
-  PetscCall(PetscFree(input));
+  PetscCall(EqmMeshNumberInOrder(solid, numbering->num_leaves, numbering->leaf, numbering->number));
   PetscCall(PetscLayoutCreateFromSizes(solid->comm, PETSC_DECIDE, solid->num_boundary_vertices, 1, &numbering->layout));
   PetscFunctionReturn(0);
 }

@@ -105,7 +105,7 @@ struct _p_EqmSolver {
 };
 
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,
-    EqmMethodRiemann, EqmMethodQiem, EqmMethodEulerExplicit, EqmMethodEulerImplicit, EqmMethodNewton;
+    EqmMethodRiemann, EqmMethodCovering, EqmMethodQiem, EqmMethodEulerExplicit, EqmMethodEulerImplicit, EqmMethodNewton;
 typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
 PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 

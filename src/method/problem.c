@@ -147,6 +147,7 @@ static const EqmOffer on_sphere[] = {
 
 static const EqmOffer conformal_in_disk[] = {
     {&EqmMethodRiemann, "arc-length", 100, 0., 0., 1e-5},
+    {&EqmMethodCovering, "harmonic", 500, 0., 0., 0.},
 };
 
 static const EqmOffer conformal_on_sphere[] = {
@@ -266,7 +267,7 @@ PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, con
           problem->place, names);
 }
 
-/* Call `visit` for every method that the target's rows offer, once each. */
+/* Call `visit` for every method that the target's rows offer, once for each name: its options are the same. */
 static PetscErrorCode ForEachMethod(const char *target, PetscErrorCode (*visit)(const EqmMethod *, void *),
                                     void *context)
 {
@@ -279,7 +280,7 @@ static PetscErrorCode ForEachMethod(const char *target, PetscErrorCode (*visit)(
     for (PetscInt o = 0; o < problems[k].num_offers; o++) {
       const EqmMethod *const method = problems[k].offers[o].method;
       PetscInt s = 0;
-      while (s < num_seen && seen[s] != method) s++;
+      while (s < num_seen && strcmp(seen[s]->name, method->name)) s++;
       if (s < num_seen) continue;
       seen[num_seen++] = method;
       PetscCall(visit(method, context));
