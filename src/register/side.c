@@ -4,6 +4,7 @@
 #include "method/method.h"
 #include "store/h5.h"
 #include "store/store.h"
+#include <math.h>
 #include <string.h>
 
 /* Does the file hold a map beside its mesh? */
@@ -49,7 +50,8 @@ static PetscErrorCode ChooseTarget(EqmRegistration r, const EqmSide *side)
   PetscFunctionReturn(0);
 }
 
-/* Is a map that was read one to this target? Surfaces: all places, or all boundary places, at distance one. */
+/* Is a map that was read one to this target? Places on the sphere, or within the disk or ball and of boundary vertices
+   on its boundary. */
 static PetscErrorCode CheckMap(EqmRegistration r, EqmSide *side, const char *file)
 {
   const EqmMesh mesh = side->mesh;
@@ -63,16 +65,15 @@ static PetscErrorCode CheckMap(EqmRegistration r, EqmSide *side, const char *fil
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
     PetscReal squared = 0.;
     for (PetscInt k = 0; k < r->dim; k++) squared += PetscSqr(side->x[r->dim * v + k]);
-    if (r->kind == EQM_IMAGE_SPHERE || mesh->on_boundary[v])
-      worst = PetscMax(worst, PetscAbsReal(PetscSqrtReal(squared) - 1.));
+    const PetscBool on_it = (PetscBool)(r->kind == EQM_IMAGE_SPHERE || mesh->on_boundary[v]);
+    const PetscReal beyond = PetscSqrtReal(squared) - 1., off = on_it ? PetscAbsReal(beyond) : PetscMax(0., beyond);
+    if (!(off <= worst)) worst = off < INFINITY ? off : PETSC_MAX_REAL; /* no number: as far off as can be */
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, r->comm));
   if (!(worst < 1e-6))
     EqmFail(r->comm, EQM_ERR_USAGE,
-            "the map in %s is not one to the unit %s: vertices that belong on its %s are off by %.2g; map %s with "
-            "equimap %s",
-            file, r->target, r->kind == EQM_IMAGE_SPHERE ? "surface" : "boundary", (double)worst, side->soup->file,
-            r->target);
+            "the map in %s is not one to the unit %s: vertices are off it by up to %.2g; map %s with equimap %s", file,
+            r->target, (double)worst, side->soup->file, r->target);
   PetscFunctionReturn(0);
 }
 
