@@ -25,6 +25,16 @@ static PetscErrorCode CreateSphere(EqmSolver solver, EqmDomain *domain)
   PetscFunctionReturn(0);
 }
 
+/* Up to here a factor of the exact Hessian costs less than the iterations that it saves. */
+static PetscErrorCode IsSmall(EqmMesh mesh, PetscBool *small)
+{
+  const PetscInt most_vertices = 20000;
+
+  PetscFunctionBegin;
+  *small = (PetscBool)(mesh->num_vertices <= most_vertices);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode CreateBall(EqmSolver solver, EqmDomain *domain)
 {
   PetscFunctionBegin;
@@ -74,20 +84,19 @@ static PetscErrorCode AskBall(EqmSolver solver, PetscOptionItems *PetscOptionsOb
   EqmSettings *const set = &solver->settings;
 
   PetscFunctionBegin;
-  set->boundary_max_it = 4; /* its last digits depend on the input's, which a long run would magnify */
-  set->lbfgs_memory = 20;   /* the methods' own options ask next and show these as their defaults */
+  set->lbfgs_memory = 20; /* the methods' own options ask next and show these as their defaults */
   set->lbfgs_line_search = (PetscEnum)EQM_SEARCH_WOLFE;
   PetscCall(PetscOptionsBool("-anisotropic_scaling",
                              "start: turn and scale the solid to fill a cube, axis by axis, before its first map",
                              "EqmSolverSetFromOptions", set->anisotropic_scaling, &set->anisotropic_scaling, NULL));
-  PetscCall(PetscOptionsString("-boundary_method", "start: the method that maps the surface to the sphere",
-                               "EqmSolverSetFromOptions", set->boundary_method, set->boundary_method,
-                               sizeof(set->boundary_method), NULL));
+  PetscCall(PetscOptionsString(
+      "-boundary_method",
+      "start: the method that maps the surface to the sphere (else the sphere's own; of fixed-point: the same)",
+      "EqmSolverSetFromOptions", set->boundary_method, set->boundary_method, sizeof(set->boundary_method), NULL));
   PetscCall(PetscOptionsString("-boundary_start", "start: the first map of the surface to the sphere",
                                "EqmSolverSetFromOptions", set->boundary_start, set->boundary_start,
                                sizeof(set->boundary_start), NULL));
-  PetscCall(PetscOptionsInt("-boundary_max_it",
-                            "start: at most so many iterations for the surface (-1: the method's own)",
+  PetscCall(PetscOptionsInt("-boundary_max_it", "start: at most so many iterations for the surface (-1: few)",
                             "EqmSolverSetFromOptions", set->boundary_max_it, &set->boundary_max_it, NULL));
   PetscFunctionReturn(0);
 }
@@ -159,12 +168,24 @@ static const EqmOffer conformal_on_sphere[] = {
 
 static const EqmOffer in_ball[] = {
     {&EqmMethodLbfgs, "fixed-point", 500, 1e-5, 0., 0.},
+    {&EqmMethodNewton, "fixed-point", 100, 1e-9, 0., 0.},
     {&EqmMethodFixedPoint, "harmonic", 500, 1e-6, 0., 0.},
     {&EqmMethodNcg, "fixed-point", 500, 1e-6, 0., 0.},
+};
+
+static const EqmOffer in_ball_small[] = {
     {&EqmMethodNewton, "fixed-point", 100, 1e-9, 0., 0.},
+    {&EqmMethodLbfgs, "fixed-point", 500, 1e-5, 0., 0.},
+    {&EqmMethodFixedPoint, "harmonic", 500, 1e-6, 0., 0.},
+    {&EqmMethodNcg, "fixed-point", 500, 1e-6, 0., 0.},
 };
 
 #define OFFERS(list) .offers = (list), .num_offers = sizeof(list) / sizeof((list)[0])
+
+#define BALL_PROBLEM                                                                                                   \
+  .target = "ball", .place = "ball", .options = AskBall, .create_domain = CreateBall,                                  \
+  .objective = &EqmObjectiveAuthalic, .sum = EqmSumMeasures, .unfold = EqmBallUnfold, .starts = EQM_STARTS_BALL,       \
+  .poor_energy = off_by_half
 
 /* Ratios off by half, root mean square: that is no map of equal areas. */
 static const PetscReal off_by_half = .25;
@@ -217,16 +238,8 @@ static const EqmProblem problems[] = {
      .finish = EqmConformalFinish,
      .starts = EQM_STARTS_SPHERE,
      OFFERS(conformal_on_sphere)},
-    {.target = "ball",
-     .place = "ball",
-     .options = AskBall,
-     .create_domain = CreateBall,
-     .objective = &EqmObjectiveAuthalic,
-     .sum = EqmSumMeasures,
-     .unfold = EqmBallUnfold,
-     .starts = EQM_STARTS_BALL,
-     .poor_energy = off_by_half,
-     OFFERS(in_ball)},
+    {BALL_PROBLEM, .takes = IsSmall, OFFERS(in_ball_small)},
+    {BALL_PROBLEM, OFFERS(in_ball)},
 };
 enum { NUM_PROBLEMS = sizeof(problems) / sizeof(problems[0]) };
 
@@ -335,6 +348,7 @@ PetscErrorCode EqmProblemAskOptions(EqmSolver solver, PetscOptionItems *PetscOpt
   PetscFunctionBegin;
   for (PetscInt k = 0; k < NUM_PROBLEMS; k++) {
     if (strcmp(problems[k].target, solver->target) || !problems[k].options) continue;
+    if (k > 0 && problems[k].options == problems[k - 1].options) continue; /* rows of one target stand together */
     PetscCall(problems[k].options(solver, PetscOptionsObject));
   }
   PetscCall(ForEachMethod(solver->target, AskMethod, &asking));

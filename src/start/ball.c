@@ -88,13 +88,17 @@ static PetscErrorCode PlaceMesh(EqmSolver solver, EqmPlace *place)
 static PetscErrorCode MapSurface(EqmSolver solver, EqmMesh surface, EqmSolver *sphere)
 {
   const EqmSettings *const set = &solver->settings;
+  const PetscBool by_fixed_point = (PetscBool)(solver->method == &EqmMethodFixedPoint);
+  const char *const method = !set->boundary_method[0] && by_fixed_point ? solver->method->name : set->boundary_method;
+  PetscInt max_it = set->boundary_max_it;
   char text[256];
   PetscOptions options;
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(text, sizeof(text), "-quiet -max_it %" PetscInt_FMT "%s%s%s%s", set->boundary_max_it,
-                          set->boundary_method[0] ? " -method " : "", set->boundary_method,
-                          set->boundary_start[0] ? " -start " : "", set->boundary_start));
+  if (max_it < 0) max_it = by_fixed_point ? 10 : 4; /* a long run would magnify the last digits of the input */
+  PetscCall(PetscSNPrintf(text, sizeof(text), "-quiet -max_it %" PetscInt_FMT "%s%s%s%s", max_it,
+                          method[0] ? " -method " : "", method, set->boundary_start[0] ? " -start " : "",
+                          set->boundary_start));
   PetscCall(PetscOptionsCreate(&options));
   PetscCall(PetscOptionsInsertString(options, text));
   PetscCall(PetscOptionsPush(options));
