@@ -189,6 +189,19 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* All of it is the sphere's, on the covering's mesh. */
+static PetscErrorCode State(EqmSolver solver, EqmState state)
+{
+  const Covering *const data = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStateUseMesh(state, data->mesh));
+  PetscCall(EqmStatePlace(state, data->sphere->domain, "sphere", &data->sphere->place));
+  PetscCall(data->sphere->method->state(data->sphere, state));
+  PetscCall(EqmStateUseMesh(state, solver->mesh));
+  PetscFunctionReturn(0);
+}
+
 /* The sphere's solver has the same. */
 static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
 {
@@ -197,12 +210,12 @@ static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsOb
   PetscFunctionReturn(0);
 }
 
-/* Without a `state`: a run that was interrupted goes on from its map, but with phase I anew. */
 const EqmMethod EqmMethodCovering = {
     .name = "qiem",
     .purpose = "Riemann map by the double covering and the quasi-implicit Euler method (004)",
     .options = Options,
     .set_up = SetUp,
     .step = Step,
+    .state = State,
     .destroy = Destroy,
 };

@@ -202,6 +202,14 @@ PetscErrorCode EqmStateReals(EqmState state, const char *name, PetscInt count, P
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmStateUseMesh(EqmState state, EqmMesh mesh)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSFDestroy(&state->to_slab));
+  state->mesh = mesh;
+  PetscFunctionReturn(0);
+}
+
 /* The way between owned vertices and the slabs of the file, and a buffer of `width` reals per row. */
 static PetscErrorCode MakeWay(EqmState state, EqmSlab slab)
 {

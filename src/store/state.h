@@ -46,6 +46,9 @@ PETSC_INTERN PetscErrorCode EqmStateGroup(EqmState state, const char *group);
 PETSC_INTERN PetscBool EqmStateIsLoading(EqmState state);
 /* The mesh whose state it is. Not collective. */
 PETSC_INTERN EqmMesh EqmStateMesh(EqmState state);
+/* Vertices are those of this mesh from here on: for a method that solves on another mesh beside its own, which it gives
+   back at the end. Collective. */
+PETSC_INTERN PetscErrorCode EqmStateUseMesh(EqmState state, EqmMesh mesh);
 
 typedef PetscErrorCode (*EqmStateVisit)(EqmState state, void *context);
 /* Write what `visit` names. Errors: EQM_ERR_IO, and the file that was there stays. */
