@@ -134,7 +134,7 @@ static PetscErrorCode TestStops(const char *options, EqmStatus status, const cha
 }
 
 /* What a user gets wrong is told as such, before any work. */
-static PetscErrorCode TestUsage(const char *text)
+static PetscErrorCode TestUsage(const char *target, const char *text)
 {
   TestMesh test;
   PetscOptions options;
@@ -143,7 +143,7 @@ static PetscErrorCode TestUsage(const char *text)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 100, 1, &test));
   PetscCall(TestOptionsBegin(text, &options));
-  PetscCall(EqmSolverCreate(test.mesh, "disk", &solver));
+  PetscCall(EqmSolverCreate(test.mesh, target, &solver));
   CHECK_FAILS(EQM_ERR_USAGE, EqmSolverSetFromOptions(solver));
   PetscCall(TestOptionsEnd(&options));
   PetscCall(EqmSolverDestroy(&solver));
@@ -182,12 +182,12 @@ int main(int argc, char **argv)
       TestStops("-method lm -max_factorizations 2 -energy_rtol 0", EQM_STATUS_NOT_CONVERGED, "-max_factorizations"));
   PetscCall(TestStops("-method ncg -wall_time 1e-6 -energy_rtol 0", EQM_STATUS_NOT_CONVERGED, "-wall_time"));
 
-  PetscCall(TestUsage("-method nosuch"));
-  PetscCall(TestUsage("-start nosuch"));
-  PetscCall(TestUsage("-max_it -5"));
-  PetscCall(TestUsage("-wall_time -1"));
-  PetscCall(TestUsage("-balance -.5"));
-  PetscCall(TestUsage("-corners 1,2,3"));
+  PetscCall(TestUsage("disk", "-method nosuch"));
+  PetscCall(TestUsage("disk", "-start nosuch"));
+  PetscCall(TestUsage("disk", "-max_it -5"));
+  PetscCall(TestUsage("disk", "-wall_time -1"));
+  PetscCall(TestUsage("disk", "-balance -.5"));
+  PetscCall(TestUsage("square", "-corners 1,2,3"));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
