@@ -168,13 +168,13 @@ static const EqmOffer conformal_on_sphere[] = {
 
 static const EqmOffer in_ball[] = {
     {&EqmMethodLbfgs, "fixed-point", 500, 1e-5, 0., 0.},
-    {&EqmMethodNewton, "fixed-point", 100, 1e-9, 0., 0.},
+    {&EqmMethodNewton, "fixed-point", 300, 1e-9, 0., 0.},
     {&EqmMethodFixedPoint, "harmonic", 500, 1e-6, 0., 0.},
     {&EqmMethodNcg, "fixed-point", 500, 1e-6, 0., 0.},
 };
 
 static const EqmOffer in_ball_small[] = {
-    {&EqmMethodNewton, "fixed-point", 100, 1e-9, 0., 0.},
+    {&EqmMethodNewton, "fixed-point", 300, 1e-9, 0., 0.},
     {&EqmMethodLbfgs, "fixed-point", 500, 1e-5, 0., 0.},
     {&EqmMethodFixedPoint, "harmonic", 500, 1e-6, 0., 0.},
     {&EqmMethodNcg, "fixed-point", 500, 1e-6, 0., 0.},

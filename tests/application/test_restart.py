@@ -258,16 +258,16 @@ def check_register(program):
     """A registration is several minimisations: stopped in the second, it goes on there."""
     run = ("register", "hills.obj", "other.obj", "-quiet")
     program.succeed(*run, "-o", "whole.h5", codes=(0, 4, 5))
-    process = program.start(*run, "-o", "run.h5", "-checkpoint", "run.ck", "-checkpoint_every", 1)
+    process = program.start(*run, "-o", "phi.h5", "-checkpoint", "run.ck", "-checkpoint_every", 1)
     wait_for(lambda: os.path.exists(program.file("run.ck.2")), process)
     os.kill(program.processes(process)[0], signal.SIGUSR1)
     text = process.communicate(timeout=60)[0]
     if process.returncode != 75:  # it was quicker
         assert process.returncode in (0, 4, 5), text
         return
-    assert "-restart run.ck\n" in text and not os.path.exists(program.file("run.h5")), text
-    program.succeed(*run, "-o", "run.h5", "-restart", "run.ck", codes=(0, 4, 5))
-    with h5py.File(program.file("run.h5")) as run, h5py.File(program.file("whole.h5")) as whole:
+    assert "-restart run.ck\n" in text and not os.path.exists(program.file("phi.h5")), text
+    program.succeed(*run, "-o", "phi.h5", "-restart", "run.ck", codes=(0, 4, 5))
+    with h5py.File(program.file("phi.h5")) as run, h5py.File(program.file("whole.h5")) as whole:
         difference = numpy.abs(run["/map/coordinates"][...] - whole["/map/coordinates"][...]).max()
     assert difference == 0.0 if program.ranks == 1 else difference < 1e-2, difference
 
