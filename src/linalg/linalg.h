@@ -103,6 +103,7 @@ struct _p_EqmLinear {
   PetscErrorCode (*factor)(EqmLinear, PetscBool *success);
   PetscErrorCode (*set_fields)(EqmLinear, PetscInt count, const PetscReal *fields); /* may be NULL */
   PetscErrorCode (*solve)(EqmLinear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success);
+  PetscErrorCode (*apply)(EqmLinear, PetscInt num_rhs, const PetscReal *b, PetscReal *x); /* NULL: solve */
   PetscErrorCode (*destroy)(EqmLinear);
 };
 
@@ -119,6 +120,7 @@ PETSC_INTERN PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell
 PETSC_INTERN PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
 PETSC_INTERN PetscErrorCode EqmLinearTrySolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x,
                                               PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmLinearApply(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
 PETSC_INTERN PetscErrorCode EqmLinearSetInexact(EqmLinear linear, PetscReal tolerance);
 PETSC_INTERN PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count, const PetscReal *fields);
 

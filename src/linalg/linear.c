@@ -262,6 +262,26 @@ PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void
   PetscFunctionReturn(0);
 }
 
+/* x = B b with a fixed symmetric definite B near A^-1: the factor's inverse itself, or one multigrid cycle. What turns
+   gradients into directions asks for no more, and a truncated iteration would not be linear. Columns as for
+   EqmLinearSolve. Collective. */
+PetscErrorCode EqmLinearApply(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
+{
+  EqmWork *work;
+
+  PetscFunctionBegin;
+  if (!linear->apply) {
+    PetscCall(EqmLinearSolve(linear, num_rhs, b, x));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_SOLVE));
+  PetscCall(linear->apply(linear, num_rhs, b, x));
+  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_SOLVE));
+  PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
+  work->solves += num_rhs;
+  PetscFunctionReturn(0);
+}
+
 /* Steps need no exact solutions: iterations may stop at this reduction of the error's estimate in the energy norm;
    exact factors stay exact. For the factorisations to come. Not collective. */
 PetscErrorCode EqmLinearSetInexact(EqmLinear linear, PetscReal tolerance)

@@ -95,6 +95,19 @@ static PetscErrorCode Spread(EqmLinear linear, const PetscReal *unknowns, PetscI
   PetscFunctionReturn(0);
 }
 
+/* And back. */
+static PetscErrorCode Collect(EqmLinear linear, Vec rows, PetscReal *unknowns)
+{
+  const Multigrid *const g = linear->data;
+  const PetscScalar *array;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(rows, &array));
+  for (PetscInt i = 0; i < linear->num_owned; i++) unknowns[i] = array[g->row[i]];
+  PetscCall(VecRestoreArrayRead(rows, &array));
+  PetscFunctionReturn(0);
+}
+
 /* Orthonormal fields from those given; one that depends on its predecessors is left out. */
 static PetscErrorCode SetFields(EqmLinear linear, PetscInt count, const PetscReal *fields)
 {
@@ -163,16 +176,29 @@ static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal 
   PetscFunctionBegin;
   PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
   for (PetscInt k = 0; k < num_rhs; k++) {
-    const PetscScalar *array;
     PetscCall(Spread(linear, b + k * linear->num_owned, -1, g->b));
     PetscCall(KSPSolve(g->ksp, g->b, g->x));
     PetscCall(KSPGetConvergedReason(g->ksp, &reason));
     PetscCall(KSPGetIterationNumber(g->ksp, &iterations));
     work->cg_iterations += iterations;
     if (reason <= 0) *success = PETSC_FALSE;
-    PetscCall(VecGetArrayRead(g->x, &array));
-    for (PetscInt i = 0; i < linear->num_owned; i++) x[k * linear->num_owned + i] = array[g->row[i]];
-    PetscCall(VecRestoreArrayRead(g->x, &array));
+    PetscCall(Collect(linear, g->x, x + k * linear->num_owned));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* One cycle: with symmetric sweeps before and after it is a fixed symmetric definite operator. */
+static PetscErrorCode Apply(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
+{
+  Multigrid *const g = linear->data;
+  PC pc;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(g->ksp, &pc));
+  for (PetscInt k = 0; k < num_rhs; k++) {
+    PetscCall(Spread(linear, b + k * linear->num_owned, -1, g->b));
+    PetscCall(PCApply(pc, g->b, g->x));
+    PetscCall(Collect(linear, g->x, x + k * linear->num_owned));
   }
   PetscFunctionReturn(0);
 }
@@ -222,6 +248,7 @@ PetscErrorCode EqmLinearSetUpMultigrid(EqmLinear linear)
   linear->set_fields = SetFields;
   linear->factor = Factor;
   linear->solve = Solve;
+  linear->apply = Apply;
   linear->destroy = Destroy;
   PetscCall(MakeRows(linear));
   PetscCall(KSPCreate(linear->mesh->comm, &g->ksp));

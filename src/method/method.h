@@ -136,6 +136,8 @@ PETSC_INTERN PetscErrorCode EqmGroupFactorScaled(EqmSolver solver, const PetscRe
                                                  const PetscReal *mass, PetscReal diagonal_factor);
 /* Solve with the factored Laplacian; columns of num_owned each. Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *columns);
+/* The same as a metric needs it: the factor, or one multigrid cycle (EqmLinearApply). Collective. */
+PETSC_INTERN PetscErrorCode EqmGroupApply(EqmSolver solver, PetscInt num_rhs, PetscReal *columns);
 /* Solve L z = 0 on the vertices that are not held, in `width` columns: z (per local vertex, `width` each) holds the
    held values on entry, all values on return. Counts a factorisation. Collective. */
 PETSC_INTERN PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const signed char *group,

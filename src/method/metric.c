@@ -148,7 +148,7 @@ static PetscErrorCode ApplyInSpace(EqmSolver solver, EqmMetric metric, Vec g, Ve
   PetscFunctionBegin;
   PetscCall(EqmDomainExpand(solver->domain, &solver->place, g, metric->ambient));
   for (PetscInt k = 0; k < dim * n; k++) metric->columns[(k % dim) * n + k / dim] = metric->ambient[k];
-  PetscCall(EqmGroupSolve(solver, dim, metric->columns));
+  PetscCall(EqmGroupApply(solver, dim, metric->columns));
   for (PetscInt k = 0; k < dim * n; k++) metric->ambient[k] = metric->columns[(k % dim) * n + k / dim];
   PetscCall(EqmDomainProject(solver->domain, &solver->place, metric->ambient, h));
   PetscFunctionReturn(0);
@@ -170,7 +170,7 @@ static PetscErrorCode ApplyByDof(EqmSolver solver, EqmMetric metric, Vec g, Vec 
     }
   }
   PetscCall(VecRestoreArrayRead(g, &from));
-  PetscCall(EqmGroupSolve(solver, domain->dim, metric->columns));
+  PetscCall(EqmGroupApply(solver, domain->dim, metric->columns));
   PetscCall(VecGetArrayWrite(h, &to));
   for (PetscInt v = 0; v < n; v++) {
     for (PetscInt k = 0; k < domain->dof_count[v]; k++)

@@ -78,6 +78,13 @@ PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *colu
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmGroupApply(EqmSolver solver, PetscInt num_rhs, PetscReal *columns)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLinearApply(solver->scalar, num_rhs, columns, columns));
+  PetscFunctionReturn(0);
+}
+
 /* May coordinate c of a vertex of this kind move? */
 static PetscBool CoordinateIsFree(EqmVertexKind kind, PetscInt c)
 {

@@ -92,6 +92,26 @@ static PetscErrorCode CheckResidual(Model *model, PetscReal diagonal, const Pets
   PetscFunctionReturn(0);
 }
 
+/* What stands for the inverse in a metric is linear, symmetric and definite: u B v = v B u, u B u > 0. */
+static PetscErrorCode CheckApply(EqmLinear linear, Model *model)
+{
+  const PetscInt n = model->unknowns.num_owned;
+  PetscReal *b, *x, product[4] = {0., 0., 0., 0.};
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(2 * n, &b, 2 * n, &x));
+  for (PetscInt i = 0; i < 2 * n; i++) b[i] = Entry(model->unknowns.first + i % PetscMax(n, 1), 7 + i / PetscMax(n, 1));
+  PetscCall(EqmLinearApply(linear, 2, b, x));
+  for (PetscInt k = 0; k < 4; k++) {
+    for (PetscInt i = 0; i < n; i++) product[k] += b[k / 2 * n + i] * x[k % 2 * n + i];
+    product[k] = TestSum(PETSC_COMM_WORLD, product[k]);
+  }
+  CHECK(product[0] > 0. && product[3] > 0., "not definite: %g, %g", (double)product[0], (double)product[3]);
+  CHECK_CLOSE(product[1], product[2], 1e-10, PetscSqrtReal(product[0] * product[3]));
+  PetscCall(PetscFree2(b, x));
+  PetscFunctionReturn(0);
+}
+
 /* Factor and solve. `in_place`: solutions over right-hand sides. */
 static PetscErrorCode CheckSolve(EqmLinear linear, Model *model, PetscReal diagonal, PetscInt num_rhs,
                                  PetscBool in_place, PetscReal tolerance)
@@ -177,6 +197,7 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
         (int)(work->solves - before.solves));
   CHECK(work->coupled_factorizations - before.coupled_factorizations == (coupled ? 4 : 0), "%d coupled",
         (int)(work->coupled_factorizations - before.coupled_factorizations));
+  PetscCall(CheckApply(linear, &model));
   if (direct)
     PetscCall(CheckIndefinite(linear, &model));
   else
