@@ -1,5 +1,6 @@
-/* Angle-preserving maps of closed surfaces: the objective E_D - A + |c|^2/2, its metric, its step limit. The last term
-   holds the mass centre c: Mobius maps change the first two by the error of the mesh only, and would drift. */
+/* Angle-preserving maps: the Dirichlet energy; and for those of closed surfaces the objective E_D - A + |c|^2/2, its
+   metric, its step limit. The last term holds the mass centre c: Mobius maps change the first two by the error of the
+   mesh only, and would drift. */
 #include "method/method.h"
 
 PetscErrorCode EqmAngleWeights(EqmSolver solver, const PetscReal **weights)
@@ -21,6 +22,18 @@ PetscErrorCode EqmVertexMass(EqmSolver solver, const PetscReal **mass)
     PetscCall(EqmMeshVertexWeights(solver->mesh, solver->vertex_mass));
   }
   *mass = solver->vertex_mass;
+  PetscFunctionReturn(0);
+}
+
+/* Those of the areas, but the energy is Dirichlet's, 1/2 tr f^T L f with the mesh's cotangents. */
+static PetscErrorCode SumDirichlet(EqmSolver solver)
+{
+  const PetscReal *weights;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSumMeasures(solver));
+  PetscCall(EqmAngleWeights(solver, &weights));
+  PetscCall(EqmLaplacianEnergy(solver->mesh, weights, solver->domain->dim, solver->place.x, &solver->totals.energy));
   PetscFunctionReturn(0);
 }
 
@@ -109,7 +122,8 @@ static PetscErrorCode StepToFold(EqmSolver solver, Vec direction, PetscReal *t)
   PetscFunctionReturn(0);
 }
 
-const EqmObjective EqmObjectiveConformal = {.evaluate = Evaluate,
+const EqmObjective EqmObjectiveConformal = {.sum = SumDirichlet,
+                                            .evaluate = Evaluate,
                                             .metric = CotangentMetric,
                                             .fixed_metric = PETSC_TRUE,
                                             .inverse_scale = 1. / (4. * PETSC_PI),

@@ -1,10 +1,14 @@
-/* What the methods of descent minimise, and the metric that suits it: one for each energy of the table of problems. */
+/* The energies of the table of problems: the sums that a map is judged by, and, for the methods of descent, what they
+   minimise and the metric that suits it. */
 #ifndef EQM_OBJECTIVE_H
 #define EQM_OBJECTIVE_H
 
 #include <equimap/solver.h>
 
 typedef struct {
+  /* Totals from place and image: areas or volumes, folds, the energy. Collective. */
+  PetscErrorCode (*sum)(EqmSolver);
+  PetscReal poor_energy; /* a stagnating map with more than this, per target measure, is no success; 0: any may be */
   /* Value at a place and, unless NULL, gradient in degrees of freedom; `image` returns the measures of the image cells.
      Counts an evaluation. Collective. */
   PetscErrorCode (*evaluate)(EqmSolver, const EqmPlace *place, PetscReal *image, PetscReal *value, Vec gradient);
@@ -19,6 +23,9 @@ typedef struct {
 } EqmObjective;
 
 PETSC_INTERN const EqmObjective EqmObjectiveAuthalic, EqmObjectiveConformal;
+
+/* Totals of the areas or volumes: the normalised authalic or isovolumetric energy. Collective. */
+PETSC_INTERN PetscErrorCode EqmSumMeasures(EqmSolver solver);
 
 /* ---- angles (src/method/conformal.c) */
 /* Cotangent weights of the mesh, 3 per local cell; made at the first need and kept. Collective. */

@@ -25,16 +25,6 @@ static PetscErrorCode CreateSphere(EqmSolver solver, EqmDomain *domain)
   PetscFunctionReturn(0);
 }
 
-/* Up to here a factor of the exact Hessian costs less than the iterations that it saves. */
-static PetscErrorCode IsSmall(EqmMesh mesh, PetscBool *small)
-{
-  const PetscInt most_vertices = 20000;
-
-  PetscFunctionBegin;
-  *small = (PetscBool)(mesh->num_vertices <= most_vertices);
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode CreateBall(EqmSolver solver, EqmDomain *domain)
 {
   PetscFunctionBegin;
@@ -101,31 +91,6 @@ static PetscErrorCode AskBall(EqmSolver solver, PetscOptionItems *PetscOptionsOb
   PetscFunctionReturn(0);
 }
 
-/* ---- energies */
-PetscErrorCode EqmSumMeasures(EqmSolver solver)
-{
-  PetscReal *scratch;
-
-  PetscFunctionBegin;
-  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
-  if (!solver->domain->curved_image) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &scratch));
-  PetscCall(EqmImageFolds(solver->domain, &solver->place, scratch, &solver->totals.folds));
-  PetscCall(PetscFree(scratch));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmSumDirichlet(EqmSolver solver)
-{
-  const PetscReal *weights;
-
-  PetscFunctionBegin;
-  PetscCall(EqmSumMeasures(solver));
-  PetscCall(EqmAngleWeights(solver, &weights));
-  PetscCall(EqmLaplacianEnergy(solver->mesh, weights, solver->domain->dim, solver->place.x, &solver->totals.energy));
-  PetscFunctionReturn(0);
-}
-
 /* ---- meshes */
 static PetscErrorCode HasBoundary(EqmMesh mesh, PetscBool *has)
 {
@@ -139,6 +104,14 @@ static PetscErrorCode IsClosed(EqmMesh mesh, PetscBool *closed)
   PetscFunctionBegin;
   *closed = (PetscBool)(mesh->num_boundary_vertices == 0);
   PetscFunctionReturn(0);
+}
+
+/* Up to so many vertices a factor of the exact Hessian costs less than the iterations that it saves. */
+static const EqmMethod *PreferInBall(EqmMesh mesh)
+{
+  const PetscInt most_vertices = 20000;
+
+  return mesh->num_vertices <= most_vertices ? &EqmMethodNewton : &EqmMethodLbfgs;
 }
 
 /* ---- methods: name, first map, -max_it, -energy_rtol, -ratio_tol, -gradient_tol */
@@ -167,13 +140,6 @@ static const EqmOffer conformal_on_sphere[] = {
 };
 
 static const EqmOffer in_ball[] = {
-    {&EqmMethodLbfgs, "fixed-point", 500, 1e-5, 0., 0.},
-    {&EqmMethodNewton, "fixed-point", 300, 1e-9, 0., 0.},
-    {&EqmMethodFixedPoint, "harmonic", 500, 1e-6, 0., 0.},
-    {&EqmMethodNcg, "fixed-point", 500, 1e-6, 0., 0.},
-};
-
-static const EqmOffer in_ball_small[] = {
     {&EqmMethodNewton, "fixed-point", 300, 1e-9, 0., 0.},
     {&EqmMethodLbfgs, "fixed-point", 500, 1e-5, 0., 0.},
     {&EqmMethodFixedPoint, "harmonic", 500, 1e-6, 0., 0.},
@@ -182,22 +148,12 @@ static const EqmOffer in_ball_small[] = {
 
 #define OFFERS(list) .offers = (list), .num_offers = sizeof(list) / sizeof((list)[0])
 
-#define BALL_PROBLEM                                                                                                   \
-  .target = "ball", .place = "ball", .options = AskBall, .create_domain = CreateBall,                                  \
-  .objective = &EqmObjectiveAuthalic, .sum = EqmSumMeasures, .unfold = EqmBallUnfold, .starts = EQM_STARTS_BALL,       \
-  .poor_energy = off_by_half
-
-/* Ratios off by half, root mean square: that is no map of equal areas. */
-static const PetscReal off_by_half = .25;
-
 static const EqmProblem problems[] = {
     {.target = "disk",
      .place = "disk",
      .create_domain = CreateDisk,
      .objective = &EqmObjectiveAuthalic,
-     .sum = EqmSumMeasures,
      .starts = EQM_STARTS_PLANE,
-     .poor_energy = off_by_half,
      .takes_balance = PETSC_TRUE,
      OFFERS(in_plane)},
     {.target = "square",
@@ -205,9 +161,7 @@ static const EqmProblem problems[] = {
      .options = AskCorners,
      .create_domain = CreateSquare,
      .objective = &EqmObjectiveAuthalic,
-     .sum = EqmSumMeasures,
      .starts = EQM_STARTS_PLANE,
-     .poor_energy = off_by_half,
      .takes_balance = PETSC_TRUE,
      OFFERS(in_plane)},
     {.target = "sphere",
@@ -215,16 +169,14 @@ static const EqmProblem problems[] = {
      .options = AskCenter,
      .create_domain = CreateSphere,
      .objective = &EqmObjectiveAuthalic,
-     .sum = EqmSumMeasures,
      .unfold = EqmSphereUnfold,
      .starts = EQM_STARTS_SPHERE,
-     .poor_energy = off_by_half,
      OFFERS(on_sphere)},
     {.target = "conformal",
      .place = "disk",
      .takes = HasBoundary,
      .create_domain = CreateDisk,
-     .sum = EqmSumDirichlet,
+     .objective = &EqmObjectiveConformal,
      .starts = EQM_STARTS_PLANE,
      OFFERS(conformal_in_disk)},
     {.target = "conformal",
@@ -233,13 +185,19 @@ static const EqmProblem problems[] = {
      .options = AskConformal,
      .create_domain = CreateSphere,
      .objective = &EqmObjectiveConformal,
-     .sum = EqmSumDirichlet,
      .unfold = EqmSphereUnfold,
      .finish = EqmConformalFinish,
      .starts = EQM_STARTS_SPHERE,
      OFFERS(conformal_on_sphere)},
-    {BALL_PROBLEM, .takes = IsSmall, OFFERS(in_ball_small)},
-    {BALL_PROBLEM, OFFERS(in_ball)},
+    {.target = "ball",
+     .place = "ball",
+     .options = AskBall,
+     .create_domain = CreateBall,
+     .objective = &EqmObjectiveAuthalic,
+     .unfold = EqmBallUnfold,
+     .starts = EQM_STARTS_BALL,
+     .prefers = PreferInBall,
+     OFFERS(in_ball)},
 };
 enum { NUM_PROBLEMS = sizeof(problems) / sizeof(problems[0]) };
 
@@ -265,14 +223,18 @@ PetscBool EqmProblemIsSettled(const char *target)
   return (PetscBool)(rows == 1);
 }
 
-PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, const char *method, const EqmOffer **offer)
+PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, EqmMesh mesh, const char *method,
+                                   const EqmOffer **offer)
 {
+  const char *name = method;
   char names[EQM_MESSAGE_MAX];
 
   PetscFunctionBegin;
-  *offer = strcmp(method, "auto") ? NULL : &problem->offers[0];
+  if (!strcmp(method, "auto"))
+    name = (mesh && problem->prefers ? problem->prefers(mesh) : problem->offers[0].method)->name;
+  *offer = NULL;
   for (PetscInt k = 0; k < problem->num_offers && !*offer; k++) {
-    if (!strcmp(problem->offers[k].method->name, method)) *offer = &problem->offers[k];
+    if (!strcmp(problem->offers[k].method->name, name)) *offer = &problem->offers[k];
   }
   if (*offer) PetscFunctionReturn(0);
   PetscCall(EqmProblemMethodNames(problem->target, names, sizeof(names)));
@@ -348,7 +310,6 @@ PetscErrorCode EqmProblemAskOptions(EqmSolver solver, PetscOptionItems *PetscOpt
   PetscFunctionBegin;
   for (PetscInt k = 0; k < NUM_PROBLEMS; k++) {
     if (strcmp(problems[k].target, solver->target) || !problems[k].options) continue;
-    if (k > 0 && problems[k].options == problems[k - 1].options) continue; /* rows of one target stand together */
     PetscCall(problems[k].options(solver, PetscOptionsObject));
   }
   PetscCall(ForEachMethod(solver->target, AskMethod, &asking));

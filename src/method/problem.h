@@ -23,32 +23,27 @@ typedef struct {
   PetscErrorCode (*takes)(EqmMesh, PetscBool *); /* is this the row for the mesh? NULL: yes */
   PetscErrorCode (*options)(EqmSolver, PetscOptionItems *); /* of its own; NULL: none */
   PetscErrorCode (*create_domain)(EqmSolver, EqmDomain *);
-  const EqmObjective *objective;                                              /* of the methods of descent */
-  PetscErrorCode (*sum)(EqmSolver);                                           /* totals from place and image */
+  const EqmObjective *objective;
   PetscErrorCode (*unfold)(EqmSolver, PetscInt64 *before, PetscInt64 *after); /* mend folds; NULL: cannot */
   PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
   EqmStartFamily starts;
-  PetscReal poor_energy;   /* a stagnating map with more than this, per target measure, is no success; 0: any may be */
   PetscBool takes_balance; /* -balance has a meaning */
-  const EqmOffer *offers;  /* the first is -method auto */
+  const EqmOffer *offers;
   PetscInt num_offers;
+  const EqmMethod *(*prefers)(EqmMesh); /* what -method auto is for the mesh, one of the offers; NULL: the first */
 } EqmProblem;
 
 /* The problem of a target for a mesh. Without a mesh (NULL) the target's first. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemFind(MPI_Comm comm, const char *target, EqmMesh mesh, const EqmProblem **problem);
 /* Does the target have one row only, so that its problem is known before the mesh is? Not collective. */
 PETSC_INTERN PetscBool EqmProblemIsSettled(const char *target);
-/* The offer of a method's name; "auto" is the first. Errors: EQM_ERR_USAGE. Collective. */
-PETSC_INTERN PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, const char *method,
-                                                const EqmOffer **offer);
+/* The offer of a method's name; "auto" is the one that suits the mesh, without a mesh (NULL) the first. Errors:
+   EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, EqmMesh mesh,
+                                                const char *method, const EqmOffer **offer);
 /* Names of the methods for a target, of all its rows, separated by commas. Not collective. */
 PETSC_INTERN PetscErrorCode EqmProblemMethodNames(const char *target, char *text, size_t length);
 /* Ask the options database for what the target's rows and their methods have of their own. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemAskOptions(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
-
-/* Totals of the areas or volumes: the normalised authalic or isovolumetric energy. Collective. */
-PETSC_INTERN PetscErrorCode EqmSumMeasures(EqmSolver solver);
-/* The same, but the energy is Dirichlet's, 1/2 tr f^T L f with the mesh's cotangents. Collective. */
-PETSC_INTERN PetscErrorCode EqmSumDirichlet(EqmSolver solver);
 
 #endif

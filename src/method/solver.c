@@ -49,7 +49,7 @@ PetscErrorCode EqmSolverLook(EqmSolver solver)
 PetscErrorCode EqmSolverSum(EqmSolver solver)
 {
   PetscFunctionBegin;
-  PetscCall(solver->problem->sum(solver));
+  PetscCall(solver->problem->objective->sum(solver));
   PetscFunctionReturn(0);
 }
 
@@ -84,10 +84,10 @@ static PetscBool Stagnates(EqmSolver solver)
 /* The method has come to its end, but the map may be none of equal areas. */
 static PetscErrorCode DoubtStandstill(EqmSolver solver)
 {
+  const PetscReal poor = solver->problem->objective->poor_energy;
+
   PetscFunctionBegin;
-  if (solver->problem->poor_energy == 0. ||
-      solver->totals.energy <= solver->problem->poor_energy * solver->totals.total)
-    PetscFunctionReturn(0);
+  if (poor == 0. || solver->totals.energy <= poor * solver->totals.total) PetscFunctionReturn(0);
   solver->status = EQM_STATUS_NOT_CONVERGED;
   PetscCall(PetscStrlcat(solver->message,
                          ", far from equal areas: the target may not suit the mesh (corners? slivers?)",

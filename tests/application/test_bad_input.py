@@ -85,6 +85,7 @@ CASES = [
     (["disk", "good.obj", "-max_iter", "3"], USAGE, "-max_iter"),
     (["disk", "good.obj", "-method", "magic"], USAGE, "magic"),
     (["disk", "good.obj", "-start", "magic"], USAGE, "magic"),
+    (["ball", "missing.msh", "-method", "magic"], USAGE, "magic"),  # options first: the mesh may take minutes to read
     (["disk", "good.obj", "-max_it", "-7"], USAGE, "-max_it"),
     (["disk", "good.obj", "-threads", "0"], USAGE, "-threads"),
     (["square", "good.obj", "-corners", "1,2,3"], USAGE, "-corners"),
@@ -144,7 +145,7 @@ def main():
         program.write("old.ply", "an older result")
         passed = []
         for arguments, codes, word in CASES:
-            output = ["-o", "new.h5,old.ply"] if arguments[0] in ("disk", "square") else []
+            output = ["-o", "new.h5,old.ply"] if arguments[0] in ("disk", "square", "ball") else []
             passed.append(check(program, arguments + output, codes, word))
         for output, codes, word in OUTPUTS:
             passed.append(check(program, ["disk", "good.obj"] + (["-o", output] if output else []), codes, word))
