@@ -74,7 +74,9 @@ run_and_forward() {
 
 # A run that has come to its end needs no checkpoint; one that has only come to -max_it (4) may be given more.
 forget_checkpoint() {
-  if [ "$code" -eq 0 ] && [ -n "${checkpoint:-}" ]; then rm -f "$checkpoint" "$checkpoint.previous"; fi
+  if [ "$code" -eq 0 ] && [ -n "${checkpoint:-}" ]; then
+    rm -f "$checkpoint" "$checkpoint.previous" "${checkpoint%.h5}.mesh.h5"
+  fi
 }
 
 finish() {

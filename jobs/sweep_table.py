@@ -170,6 +170,7 @@ class Store:
         self.history_file = self.folder / "history.csv"
         self.checkpoint = self.folder / "checkpoint.h5"
         self.previous = self.folder / "checkpoint.h5.previous"  # which the program keeps until the next is complete
+        self.kept_mesh = self.folder / "checkpoint.mesh.h5"  # the program's copy, to go on where the mesh is gone
         self.log_file = self.folder / "log.txt"
 
     def outcome(self):
@@ -184,6 +185,7 @@ class Store:
     def forget_checkpoint(self):
         self.checkpoint.unlink(missing_ok=True)
         self.previous.unlink(missing_ok=True)
+        self.kept_mesh.unlink(missing_ok=True)
 
     def state(self, mesh):
         """finished, interrupted, failed, begun (it runs, or was killed), or to do; what lies there may be of another run."""

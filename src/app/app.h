@@ -28,11 +28,16 @@ PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStat
 
 /* How a map command reads its mesh. */
 typedef struct {
-  const char *density; /* a file with a weight per cell, or NULL */
-  PetscReal noise;     /* that vertices move along their normals; 0: none */
-  PetscInt seed;       /* of the noise */
-  PetscBool repair;    /* mend what is safe to mend */
-  PetscBool quiet;     /* print neither what was mended nor warnings */
+  char mesh[PETSC_MAX_PATH_LEN]; /* the file; EqmInputChoose fills it in */
+  char copy[PETSC_MAX_PATH_LEN]; /* the copy of it beside the checkpoint, where that is needed */
+  PetscBool is_copy;             /* `mesh` is that copy */
+  const char *checkpoint;        /* leave a copy for the checkpoint of that name; NULL: none */
+  PetscBool resumed;             /* the run goes on from a checkpoint */
+  const char *density;           /* a file with a weight per cell, or NULL */
+  PetscReal noise;               /* that vertices move along their normals; 0: none */
+  PetscInt seed;                 /* of the noise */
+  PetscBool repair;              /* mend what is safe to mend */
+  PetscBool quiet;               /* print neither what was mended nor warnings */
 } EqmInputOptions;
 
 /* The mesh that a map command works on. */
@@ -44,8 +49,9 @@ typedef struct {
   EqmRepair repair; /* what was mended */
 } EqmInput;
 
-PETSC_INTERN PetscErrorCode EqmInputRead(const char *command, const char *file, const EqmInputOptions *options,
-                                         EqmLedger ledger, EqmInput *input);
+PETSC_INTERN PetscErrorCode EqmInputChoose(const char *named, const char *restart, EqmInputOptions *input);
+PETSC_INTERN PetscErrorCode EqmInputRead(const char *command, const EqmInputOptions *options, EqmLedger ledger,
+                                         EqmInput *input);
 PETSC_INTERN PetscErrorCode EqmInputTakeMap(const EqmInput *input, EqmMesh mesh, EqmMap found, EqmMap *map);
 PETSC_INTERN PetscErrorCode EqmInputDestroy(EqmInput *input);
 PETSC_INTERN PetscErrorCode EqmPrintRepair(const EqmRepair *repair);

@@ -1,5 +1,6 @@
 /* The mesh that a map command is given: read, mended if asked, refused if it cannot be mapped. */
 #include "app.h"
+#include "store/keptmesh.h"
 #include <string.h>
 
 /* Print the lines of a text that begin with `head`; all of them if it is empty. Collective. */
@@ -79,24 +80,39 @@ static PetscErrorCode Refuse(EqmInput *input, const char *command, PetscBool rep
           repair ? ", not even after -repair" : "", findings, hope);
 }
 
-/* EqmInputRead - read the mesh that `command` is to map, add noise and mend it if asked, refuse it if it cannot be
-   mapped.
+/* The mesh as the file has it, with its density, and then with noise; `plain` is the one without. */
+static PetscErrorCode Read(const EqmInputOptions *options, EqmInput *input, EqmSoup *plain)
+{
+  PetscFunctionBegin;
+  if (options->is_copy)
+    PetscCall(EqmKeptMeshRead(PETSC_COMM_WORLD, options->mesh, &input->given));
+  else
+    PetscCall(EqmSoupRead(PETSC_COMM_WORLD, options->mesh, &input->given));
+  if (options->density) PetscCall(EqmSoupReadDensity(input->given, options->density));
+  *plain = input->given;
+  if (options->noise == 0.) PetscFunctionReturn(0);
+  PetscCall(EqmSoupCopy(input->given, plain));
+  PetscCall(EqmSoupAddNoise(input->given, options->noise, options->seed));
+  PetscFunctionReturn(0);
+}
 
-   Collective on PETSC_COMM_WORLD. input - to be freed with EqmInputDestroy. Errors: those of EqmSoupRead,
-   EqmSoupReadDensity and EqmSoupAddNoise; EQM_ERR_MESH with what is wrong, where, and whether -repair would help. */
-PetscErrorCode EqmInputRead(const char *command, const char *file, const EqmInputOptions *options, EqmLedger ledger,
-                            EqmInput *input)
+/* EqmInputRead - read the mesh that `command` is to map, add noise and mend it if asked, refuse it if it cannot be
+   mapped, leave a copy of it beside the checkpoint.
+
+   Collective on PETSC_COMM_WORLD. options - as EqmInputChoose leaves them; input - to be freed with EqmInputDestroy.
+   Errors: those of EqmSoupRead, EqmSoupReadDensity and EqmSoupAddNoise; EQM_ERR_MESH with what is wrong, where, and
+   whether -repair would help. */
+PetscErrorCode EqmInputRead(const char *command, const EqmInputOptions *options, EqmLedger ledger, EqmInput *input)
 {
   char text[4 * EQM_MESSAGE_MAX];
   EqmDiagnosis diagnosis;
+  EqmSoup plain;
   PetscBool fatal;
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(input, sizeof(*input)));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_READ));
-  PetscCall(EqmSoupRead(PETSC_COMM_WORLD, file, &input->given));
-  if (options->density) PetscCall(EqmSoupReadDensity(input->given, options->density));
-  PetscCall(EqmSoupAddNoise(input->given, options->noise, options->seed));
+  PetscCall(Read(options, input, &plain));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DIAGNOSE));
   input->mapped = input->given;
@@ -107,6 +123,10 @@ PetscErrorCode EqmInputRead(const char *command, const char *file, const EqmInpu
   if (fatal) PetscCall(Refuse(input, command, options->repair, text));
   if (!options->quiet) PetscCall(PrintLinesWith("warning: ", text));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_CHECKPOINT));
+  if (options->checkpoint) PetscCall(EqmKeptMeshWrite(plain, options->checkpoint, options->resumed));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_CHECKPOINT));
+  if (plain != input->given) PetscCall(EqmSoupDestroy(&plain));
   PetscFunctionReturn(0);
 }
 

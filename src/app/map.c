@@ -5,8 +5,9 @@
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
-      density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN], checkpoint[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary, has_history, has_density, has_histogram, has_checkpoint;
+      density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN], checkpoint[PETSC_MAX_PATH_LEN],
+      restart[PETSC_MAX_PATH_LEN];
+  PetscBool has_output, has_summary, has_history, has_density, has_histogram, has_checkpoint, has_restart;
   EqmInputOptions input;
   PetscInt hessian_eigenvalues;
   PetscBool dry_run;
@@ -54,14 +55,19 @@ static PetscErrorCode AskOptions(MapOptions *options)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &options->input.quiet, NULL)); /* the solver lists these */
   PetscCall(PetscOptionsGetString(NULL, NULL, "-checkpoint", options->checkpoint, sizeof(options->checkpoint),
                                   &options->has_checkpoint));
+  PetscCall(
+      PetscOptionsGetString(NULL, NULL, "-restart", options->restart, sizeof(options->restart), &options->has_restart));
+  if (options->has_checkpoint && !options->dry_run) options->input.checkpoint = options->checkpoint;
   PetscFunctionReturn(0);
 }
 
 /* Refuse before the long run what would be refused after it. */
-static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOptions *options)
+static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *options)
 {
+  const char *const mesh = options->input.mesh;
+
   PetscFunctionBegin;
-  if (line->num_arguments != 1) {
+  if (line->num_arguments != 1 && !(line->num_arguments == 0 && options->has_restart)) {
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "%s wants one mesh file, %d given; usage: equimap %s MESH -o OUT.h5",
             line->command, line->num_arguments, line->command);
   }
@@ -73,12 +79,14 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const MapOption
             "-hessian_eigenvalues needs SLEPc (Debian: slepc-dev); install it and build equimap again");
   }
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
-  PetscCall(EqmCheckOutput(line->argument[0], options->output));
-  if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[0], options->summary));
-  if (options->has_history) PetscCall(EqmCheckOutput(line->argument[0], options->history));
-  if (options->has_histogram) PetscCall(EqmCheckOutput(line->argument[0], options->histogram));
+  PetscCall(EqmInputChoose(line->num_arguments ? line->argument[0] : NULL,
+                           options->has_restart ? options->restart : NULL, &options->input));
+  PetscCall(EqmCheckOutput(mesh, options->output));
+  if (options->has_summary) PetscCall(EqmCheckOutput(mesh, options->summary));
+  if (options->has_history) PetscCall(EqmCheckOutput(mesh, options->history));
+  if (options->has_histogram) PetscCall(EqmCheckOutput(mesh, options->histogram));
   if (!options->has_checkpoint) PetscFunctionReturn(0);
-  PetscCall(EqmCheckOutput(line->argument[0], options->checkpoint));
+  PetscCall(EqmCheckOutput(mesh, options->checkpoint));
   PetscCall(EqmSweepOutput(options->output));
   if (options->has_summary) PetscCall(EqmSweepOutput(options->summary));
   if (options->has_history) PetscCall(EqmSweepOutput(options->history));
@@ -219,11 +227,11 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(CheckArguments(line, &options));
   EqmStopCatchSignals();
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
-  PetscCall(EqmInputRead(line->command, line->argument[0], &options.input, ledger, &input));
+  PetscCall(EqmInputRead(line->command, &options.input, ledger, &input));
   if (options.dry_run) {
     PetscCall(PetscPrintf(PETSC_COMM_WORLD,
                           "%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells: equimap %s can begin\n",
-                          line->argument[0], input.mapped->num_vertices, input.mapped->num_cells, line->command));
+                          options.input.mesh, input.mapped->num_vertices, input.mapped->num_cells, line->command));
   } else {
     PetscCall(Solve(line, &options, ledger, &input, status));
   }

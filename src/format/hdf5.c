@@ -156,17 +156,22 @@ static PetscErrorCode WriteMesh(EqmH5 h5, EqmSoup soup)
 {
   const EqmSlab vertices = {soup->num_vertices, soup->vertex_start, soup->vertex_end - soup->vertex_start, 3};
   const EqmSlab cells = {soup->num_cells, soup->cell_start, soup->cell_end - soup->cell_start, soup->cell_size};
+  const EqmSlab per_cell = {soup->num_cells, soup->cell_start, soup->cell_end - soup->cell_start, 0};
 
   PetscFunctionBegin;
   PetscCall(EqmH5DeclareReals(h5, vertices_path, soup->num_vertices, 3));
   PetscCall(EqmH5DeclareIntegers(h5, cells_path, soup->num_cells, soup->cell_size));
+  if (soup->density) PetscCall(EqmH5DeclareReals(h5, density_path, soup->num_cells, 0));
+  PetscCall(EqmH5PutInteger(h5, "mesh_checksum", soup->checksum));
   PetscCall(EqmH5Reserve(h5));
   PetscCall(EqmH5WriteReals(h5, vertices_path, vertices, soup->vertices));
   PetscCall(WriteCells(h5, soup, cells));
+  if (soup->density) PetscCall(EqmH5WriteReals(h5, density_path, per_cell, soup->density));
   PetscFunctionReturn(0);
 }
 
-/* EqmSoupWriteHdf5 - write /mesh/vertices and /mesh/cells, each rank its slab.
+/* EqmSoupWriteHdf5 - write /mesh/vertices, /mesh/cells and, where there is a density, /cell/density, each rank its
+   slab; the attribute mesh_checksum is that of the soup.
 
    Collective. The file is there complete or not at all. Errors: EQM_ERR_IO. */
 PetscErrorCode EqmSoupWriteHdf5(EqmSoup soup, const char *file)

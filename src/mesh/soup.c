@@ -273,11 +273,11 @@ PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
   PetscCall(PetscArraycpy(s->vertices, soup->vertices, 3 * num_vertices));
   PetscCall(PetscArraycpy(s->cells, soup->cells, width * num_cells));
   if (soup->density) {
-    PetscCall(PetscMalloc1(num_cells, &s->density));
+    PetscCall(PetscMalloc1(num_cells + 1, &s->density));
     PetscCall(PetscArraycpy(s->density, soup->density, num_cells));
   }
   if (soup->edge_length) {
-    PetscCall(PetscMalloc1(3 * num_cells, &s->edge_length));
+    PetscCall(PetscMalloc1(3 * num_cells + 1, &s->edge_length));
     PetscCall(PetscArraycpy(s->edge_length, soup->edge_length, 3 * num_cells));
   }
   *copy = s;

@@ -1,6 +1,9 @@
 /* What a checkpoint holds, and when one is written. */
 #include "method/method.h"
 #include "base/atomicfile.h"
+#include "base/quiet.h"
+#include "store/keptmesh.h"
+#include <libgen.h>
 #include <unistd.h>
 
 enum { HISTORY_COLUMNS = 10 };
@@ -102,6 +105,17 @@ static PetscErrorCode VisitSeconds(EqmState state, EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* The copy of the mesh that a run left beside its checkpoint, for whoever goes on without the mesh itself. */
+static PetscErrorCode VisitKeptMesh(EqmState state, EqmSolver solver)
+{
+  char copy[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(copy, solver->checkpoints.kept_mesh, sizeof(copy)));
+  PetscCall(EqmStateText(state, EQM_KEPT_MESH, copy, sizeof(copy)));
+  PetscFunctionReturn(0);
+}
+
 /* All that can be known before the method is set up. */
 static PetscErrorCode VisitMap(EqmState state, EqmSolver solver)
 {
@@ -109,6 +123,7 @@ static PetscErrorCode VisitMap(EqmState state, EqmSolver solver)
 
   PetscFunctionBegin;
   PetscCall(VisitProblem(state, solver));
+  PetscCall(VisitKeptMesh(state, solver));
   PetscCall(EqmStatePlace(state, solver->domain, "map", &solver->place));
   PetscCall(EqmStateGroup(state, "solver"));
   PetscCall(EqmStateInt(state, "iteration", &solver->iteration));
@@ -158,38 +173,28 @@ static PetscErrorCode Visit(EqmState state, void *context)
 
 /* ---- saving */
 
-/* An error that is no reason to end: its message is kept for a warning. */
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                  PetscErrorType type, const char *message, void *context)
-{
-  if (type == PETSC_ERROR_INITIAL && message) (void)PetscStrncpy(context, message, EQM_MESSAGE_MAX);
-  return code;
-}
-
-static PetscErrorCode Warn(EqmSolver solver, const char *message, const char *consequence)
+static PetscErrorCode Exists(EqmSolver solver, const char *file, PetscBool *exists)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFPrintf(solver->comm, stderr, "equimap: warning: %s%s\n", message, consequence));
+  *exists = (PetscBool)(solver->mesh->rank == 0 && !access(file, F_OK));
+  PetscCallMPI(MPI_Bcast(exists, 1, MPIU_BOOL, 0, solver->comm));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmCheckpointBegin(EqmSolver solver)
 {
   const char *const file = solver->settings.checkpoint;
+  char copy[PETSC_MAX_PATH_LEN];
+  PetscBool kept;
 
   PetscFunctionBegin;
   solver->checkpoints.written = -1;
   if (!file[0]) PetscFunctionReturn(0);
   if (solver->mesh->rank == 0) EqmAtomicSweep(file);
   PetscCall(EqmStopWatchFile(solver->comm, file, &solver->checkpoints.stop_file));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Exists(EqmSolver solver, const char *file, PetscBool *exists)
-{
-  PetscFunctionBegin;
-  *exists = (PetscBool)(solver->mesh->rank == 0 && !access(file, F_OK));
-  PetscCallMPI(MPI_Bcast(exists, 1, MPIU_BOOL, 0, solver->comm));
+  PetscCall(EqmKeptMeshName(file, copy, sizeof(copy)));
+  PetscCall(Exists(solver, copy, &kept));
+  if (kept) PetscCall(PetscStrncpy(solver->checkpoints.kept_mesh, basename(copy), sizeof(copy)));
   PetscFunctionReturn(0);
 }
 
@@ -225,7 +230,7 @@ static PetscErrorCode Write(EqmSolver solver)
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_MINIMISE));
   PetscCall(EqmLedgerGetSeconds(ledger, NULL, NULL, &before));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_CHECKPOINT));
-  PetscCall(PetscPushErrorHandler(KeepMessage, message));
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
   error = EqmStateSave(solver->mesh, solver->settings.checkpoint, Visit, solver);
   PetscCall(PetscPopErrorHandler());
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_CHECKPOINT));
@@ -235,7 +240,7 @@ static PetscErrorCode Write(EqmSolver solver)
   known->last = after;
   if (!error) known->written = solver->iteration;
   if (error && !known->failing)
-    PetscCall(Warn(solver, message, "; the run goes on, and what was written before is still there"));
+    PetscCall(EqmWarn(solver->comm, message, "; the run goes on, and what was written before is still there"));
   known->failing = (PetscBool)(error != 0);
   PetscFunctionReturn(0);
 }
@@ -291,11 +296,11 @@ static PetscErrorCode OpenNewest(EqmSolver solver, char *name, size_t length)
     if (!exists) continue;
     any = PETSC_TRUE;
     PetscCall(PetscStrncpy(message, "no reason given", sizeof(message)));
-    PetscCall(PetscPushErrorHandler(KeepMessage, message));
+    PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
     error = EqmStateOpen(solver->mesh, name, &solver->checkpoints.open);
     PetscCall(PetscPopErrorHandler());
     if (!error) PetscFunctionReturn(0);
-    PetscCall(Warn(solver, message, "; it is left out"));
+    PetscCall(EqmWarn(solver->comm, message, "; it is left out"));
   }
   if (!any) EqmFail(solver->comm, EQM_ERR_IO, "-restart %s: there is no such file", file);
   EqmFail(solver->comm, EQM_ERR_CHECKPOINT, "-restart %s: there is no sound checkpoint; begin anew, without -restart",

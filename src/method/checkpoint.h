@@ -8,14 +8,15 @@
 
 /* What a solver knows of its checkpoints. */
 typedef struct {
-  EqmState open;         /* the one that is being loaded, between map and method; else NULL */
-  EqmStopFile stop_file; /* beside the checkpoint */
-  PetscReal cost, last;  /* seconds that the last checkpoint took, and when it was written */
-  PetscInt written;      /* iteration of the last one that was written; -1: none */
-  PetscInt resumed;      /* iteration that this run began with */
-  size_t suffix;         /* length of what EqmSolverSetStage has put behind the user's name */
-  PetscBool finished;    /* the method itself has ended: no step follows */
-  PetscBool failing;     /* the last one could not be written */
+  EqmState open;                      /* the one that is being loaded, between map and method; else NULL */
+  EqmStopFile stop_file;              /* beside the checkpoint */
+  char kept_mesh[PETSC_MAX_PATH_LEN]; /* the run's copy of its mesh, likewise; empty: there is none */
+  PetscReal cost, last;               /* seconds that the last checkpoint took, and when it was written */
+  PetscInt written;                   /* iteration of the last one that was written; -1: none */
+  PetscInt resumed;                   /* iteration that this run began with */
+  size_t suffix;                      /* length of what EqmSolverSetStage has put behind the user's name */
+  PetscBool finished;                 /* the method itself has ended: no step follows */
+  PetscBool failing;                  /* the last one could not be written */
 } EqmCheckpoints;
 
 /* The run is the `stage`-th minimisation of several, counted from 1, each with a checkpoint of its own: the names of

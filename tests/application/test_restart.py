@@ -187,15 +187,53 @@ def check_damage(program):
     program.succeed(*run, "-restart", "whole.h5", *outputs("run"), codes=(7,))
 
 
+def write_density(program):
+    program.write("density.csv", "cell,density\n" + "".join(f"{c},{1 + c % 2}\n" for c in range(program.cells)))
+
+
 def check_foreign(program):
     """Another mesh, command, method, density or weight of the angles: refused, and the message says which."""
     run = ("-max_it", 12, *ENDLESS, "-restart", "good.ck", *outputs("run"))
-    program.write("density.csv", "cell,density\n" + "".join(f"{c},{1 + c % 2}\n" for c in range(program.cells)))
+    write_density(program)
     for word, arguments in (("checksum", ("disk", "other.obj", "-method", "rgd")), ("command", ("square", "hills.obj", "-method", "rgd")),
                             ("method", ("disk", "hills.obj", "-method", "ncg")), ("-balance", ("disk", "hills.obj", "-method", "rgd", "-balance", ".1")),
                             ("density", ("disk", "hills.obj", "-method", "rgd", "-density", "density.csv"))):
         result = program.succeed(*arguments, *run, codes=(7,))
         assert word in result.stderr, f"{word}: {result.stderr}"
+
+
+def check_kept_mesh(program):
+    """A run leaves a copy of its mesh beside its checkpoint, once, and goes on from there where the mesh is gone."""
+    write_density(program)
+    options = ("-method", "rgd", "-max_it", 8, *ENDLESS, "-noise", .001, "-seed", 3)
+    named = ("disk", "hills.obj", "-density", "density.csv", *options)
+    program.succeed(*named, "-checkpoint", "good.ck.h5", "-checkpoint_every", 3, *outputs("whole"), codes=(4,))
+    with h5py.File(program.file("good.ck.h5"), "r") as state:
+        assert state.attrs["kept_mesh"] == b"good.ck.mesh.h5", state.attrs["kept_mesh"]
+    with h5py.File(program.file("good.ck.mesh.h5"), "r") as kept:
+        assert kept.attrs["complete"] == 1 and len(kept["/mesh/cells"]) == len(kept["/cell/density"]) == program.cells
+    before, written = program.read("good.ck.mesh.h5"), os.stat(program.file("good.ck.mesh.h5")).st_mtime_ns
+    shutil.copy(program.file("good.ck.h5.previous"), program.file("part.ck"))
+    for names, words in (((), named), (("hills.obj",), named), (("density.csv",), named), (("hills.obj", "density.csv"), ("disk", *options))):
+        for name in names:
+            os.rename(program.file(name), program.file(name + ".away"))
+        program.succeed(*words, "-restart", "part.ck", "-checkpoint", "good.ck.h5", *outputs("run"), codes=(4,))
+        check_same(program, "run", "whole", f"without {names}")
+        assert os.stat(program.file("good.ck.mesh.h5")).st_mtime_ns == written, "the mesh is written twice"
+        for name in names:
+            os.rename(program.file(name + ".away"), program.file(name))
+    lone = ("disk", *options, "-restart", "good.ck.h5", *outputs("run"))
+    result = program.succeed("disk", "other.obj", *lone[1:], "-checkpoint", "good.ck.h5", codes=(7,))
+    assert "checksum" in result.stderr and program.read("good.ck.mesh.h5") == before, "the right mesh is written over"
+    for how in ("flipped", "truncated"):
+        spoil(program, "good.ck.mesh.h5", how)
+        program.succeed(*lone, codes=(6, 7))
+    program.succeed(*named, "-restart", "good.ck.h5", "-checkpoint", "good.ck.h5", *outputs("run"), codes=(4,))
+    assert program.read("good.ck.mesh.h5") == before, "a damaged copy is not mended"
+    program.succeed("convert", "other.obj", "good.ck.mesh.h5", ranks=1)
+    program.succeed(*lone, codes=(7,))
+    os.remove(program.file("good.ck.mesh.h5"))
+    assert "name the mesh" in program.succeed(*lone, codes=(7,)).stderr
 
 
 def check_finished(program):
@@ -294,7 +332,7 @@ def check_full_disk(program):
         assert len([line for line in program.messages(result) if "No space" in line]) == 1, result.stderr
         assert program.read("disk/run.ck") == before
         assert len(history(program, "run.csv")) == 14
-        assert sorted(os.listdir(disk)) == ["filler", "run.ck", "run.ck.previous"], os.listdir(disk)
+        assert sorted(os.listdir(disk)) == ["filler", "run.ck", "run.ck.mesh.h5", "run.ck.previous"], os.listdir(disk)
     finally:
         subprocess.run(["umount", disk], check=True)
 
@@ -315,7 +353,8 @@ def main():
                 check_kills(program, ranks, (int(sys.argv[3]) + 3 - ranks) // 3, random.Random(ranks))
             return 0
         check_kills(program, program.ranks, 4, random.Random(program.ranks))
-        for check in (check_methods, check_other_ranks, check_damage, check_foreign, check_finished, check_stopping, check_register, check_full_disk):
+        for check in (check_methods, check_other_ranks, check_damage, check_foreign, check_kept_mesh, check_finished, check_stopping, check_register,
+                      check_full_disk):
             begun = time.time()
             check(program)
             print(f"{check.__name__[6:]}: {time.time() - begun:.1f} s", flush=True)
