@@ -168,10 +168,7 @@ static PetscErrorCode Lanczos(Hessian *h, PetscInt num_dofs, PetscInt wanted, Pe
 static PetscErrorCode Eigenvalues(Hessian *h, PetscInt num_dofs, PetscInt wanted, PetscReal *values, PetscInt *found)
 {
   const EqmDomain domain = h->solver->domain;
-  const EqmUnknowns unknowns = {.num_owned = domain->num_dofs,
-                                .first = domain->dof_first,
-                                .start = domain->dof_start,
-                                .count = domain->dof_count};
+  const EqmUnknowns unknowns = EqmDomainUnknowns(domain);
   const EqmMesh mesh = h->solver->mesh;
   PetscBool success;
 

@@ -123,12 +123,8 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   if (t == 0.) PetscFunctionReturn(0);
   PetscCall(EqmPairsAdd(lb->pairs, t, lb->direction, lb->gradient, lb->trial_gradient));
   PetscCall(VecCopy(lb->trial_gradient, lb->gradient));
-  PetscCall(EqmPlaceCopy(solver->domain, &lb->trial, &solver->place));
-  PetscCall(PetscArraycpy(solver->image, lb->image, solver->mesh->num_local_cells));
-  PetscCall(EqmSolverSum(solver));
+  PetscCall(EqmSolverAccept(solver, &lb->trial, lb->image, energy, t));
   PetscCall(VecNorm(lb->gradient, NORM_2, &solver->gradient_norm));
-  solver->objective = energy;
-  solver->step_length = t;
   *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
 }

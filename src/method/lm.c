@@ -83,11 +83,7 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   EqmLmSwap(&lm->now, &lm->best);
   PetscCall(EqmLmInnerSteps(solver));
   if (lm->kappa > 0.) AdaptBarrier(solver, t, old_squares);
-  PetscCall(EqmPlaceCopy(solver->domain, &lm->now.place, &solver->place));
-  PetscCall(PetscArraycpy(solver->image, lm->now.image, solver->mesh->num_local_cells));
-  PetscCall(EqmSolverSum(solver));
-  solver->step_length = t;
-  solver->objective = lm->now.objective;
+  PetscCall(EqmSolverAccept(solver, &lm->now.place, lm->now.image, lm->now.objective, t));
   *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
 }
@@ -118,10 +114,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
 {
   const EqmMesh mesh = solver->mesh;
   const EqmDomain domain = solver->domain;
-  const EqmUnknowns unknowns = {.num_owned = domain->num_dofs,
-                                .first = domain->dof_first,
-                                .start = domain->dof_start,
-                                .count = domain->dof_count};
+  const EqmUnknowns unknowns = EqmDomainUnknowns(domain);
   const PetscInt dim = domain->dim;
   EqmLm *lm;
 

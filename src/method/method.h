@@ -104,6 +104,15 @@ struct _p_EqmSolver {
   EqmCheckpoints checkpoints;
 };
 
+/* The domain's degrees of freedom as unknowns of a matrix; the arrays are the domain's. Not collective. */
+static inline EqmUnknowns EqmDomainUnknowns(EqmDomain domain)
+{
+  return (EqmUnknowns){.num_owned = domain->num_dofs,
+                       .first = domain->dof_first,
+                       .start = domain->dof_start,
+                       .count = domain->dof_count};
+}
+
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,
     EqmMethodRiemann, EqmMethodCovering, EqmMethodQiem, EqmMethodEulerExplicit, EqmMethodEulerImplicit, EqmMethodNewton;
 typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
@@ -115,6 +124,9 @@ PETSC_INTERN PetscErrorCode EqmSolverBegin(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverLook(EqmSolver solver);
 /* Refresh solver->totals, where solver->image is up to date already. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverSum(EqmSolver solver);
+/* A trial becomes the present map: its place, image and value, and the length of the step to it. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverAccept(EqmSolver solver, const EqmPlace *trial, const PetscReal *image,
+                                            PetscReal objective, PetscReal step_length);
 /* What was given from outside: first map, landmarks. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverTakeGiven(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverLandmarksReached(EqmSolver solver, PetscBool *reached);

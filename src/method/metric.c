@@ -39,10 +39,7 @@ PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
   }
   PetscCall(EqmPlaceCreate(solver->domain, &metric->at));
   if (NeedsGaussNewton(solver->domain)) {
-    const EqmUnknowns unknowns = {.num_owned = solver->domain->num_dofs,
-                                  .first = solver->domain->dof_first,
-                                  .start = solver->domain->dof_start,
-                                  .count = solver->domain->dof_count};
+    const EqmUnknowns unknowns = EqmDomainUnknowns(solver->domain);
     PetscCall(EqmBlockFactorCreate(mesh, &unknowns, &metric->gauss_newton));
     PetscCall(EqmDomainCreateVec(solver->domain, &metric->smoothed));
     PetscCall(PetscArrayzero(metric->group, mesh->num_local)); /* boundary and interior together */

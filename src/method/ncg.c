@@ -144,21 +144,6 @@ static PetscErrorCode ComputeBeta(EqmSolver solver, PetscReal old_product, Petsc
   PetscFunctionReturn(0);
 }
 
-/* The trial becomes the present map. */
-static PetscErrorCode AcceptTrial(EqmSolver solver, PetscReal alpha, PetscReal energy)
-{
-  Ncg *const ncg = solver->data;
-
-  PetscFunctionBegin;
-  PetscCall(EqmPlaceCopy(solver->domain, &ncg->trial, &solver->place));
-  PetscCall(PetscArraycpy(solver->image, ncg->image, solver->mesh->num_local_cells));
-  PetscCall(EqmSolverSum(solver));
-  PetscCall(VecCopy(ncg->trial_gradient, ncg->gradient));
-  ncg->alpha = solver->step_length = alpha;
-  solver->objective = energy;
-  PetscFunctionReturn(0);
-}
-
 /* 000 Algorithm 1, lines 15-22. */
 static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 {
@@ -181,7 +166,9 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   PetscCall(VecDot(ncg->preconditioned, ncg->gradient, &old_product));
   PetscCall(VecCopy(ncg->gradient, ncg->old_gradient));
   PetscCall(VecCopy(ncg->preconditioned, ncg->old_preconditioned));
-  PetscCall(AcceptTrial(solver, alpha, energy));
+  PetscCall(EqmSolverAccept(solver, &ncg->trial, ncg->image, energy, alpha));
+  ncg->alpha = alpha;
+  PetscCall(VecCopy(ncg->trial_gradient, ncg->gradient));
   PetscCall(VecNorm(ncg->gradient, NORM_2, &solver->gradient_norm));
   const PetscBool refreshed = (PetscBool)(refresh > 0 && (solver->iteration + 1) % refresh == 0);
   if (refreshed) PetscCall(EqmMetricRefresh(solver, ncg->metric));

@@ -21,10 +21,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
 {
   const EqmMesh mesh = solver->mesh;
   const EqmDomain domain = solver->domain;
-  const EqmUnknowns unknowns = {.num_owned = domain->num_dofs,
-                                .first = domain->dof_first,
-                                .start = domain->dof_start,
-                                .count = domain->dof_count};
+  const EqmUnknowns unknowns = EqmDomainUnknowns(domain);
   Newton *newton;
 
   PetscFunctionBegin;
@@ -126,18 +123,15 @@ static PetscErrorCode SolveStep(EqmSolver solver, PetscReal *promised)
   PetscFunctionReturn(0);
 }
 
+/* `gain`: the decrease over what was promised. */
 static PetscErrorCode AcceptTrial(EqmSolver solver, PetscReal energy, PetscReal gain)
 {
   Newton *const newton = solver->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmPlaceCopy(solver->domain, &newton->trial, &solver->place));
-  PetscCall(PetscArraycpy(solver->image, newton->image, solver->mesh->num_local_cells));
-  PetscCall(EqmSolverSum(solver));
+  PetscCall(EqmSolverAccept(solver, &newton->trial, newton->image, energy, 1.));
   PetscCall(VecCopy(newton->trial_gradient, newton->gradient));
   PetscCall(VecNorm(newton->gradient, NORM_2, &solver->gradient_norm));
-  solver->objective = energy;
-  solver->step_length = 1.;
   if (gain > .75) newton->mu = PetscMax(.25 * newton->mu, 1e-12);
   if (gain < .25) newton->mu *= 3.;
   PetscFunctionReturn(0);

@@ -8,8 +8,7 @@
 typedef enum { MOEBIUS_CENTER, MOEBIUS_AREA } Choice;
 static const char *const choices[] = {"center", "area", "EqmMoebiusChoice", "EQM_MOEBIUS_", NULL};
 
-/* The mass centre in the sphere's (004 Definition 2.3). */
-static PetscErrorCode Center(EqmSolver solver)
+PetscErrorCode EqmMoebiusCenter(EqmSolver solver)
 {
   const PetscReal *mass;
   PetscReal offset;
@@ -121,7 +120,7 @@ PetscErrorCode EqmConformalFinish(EqmSolver solver)
   const EqmSettings *const set = &solver->settings;
 
   PetscFunctionBegin;
-  PetscCall(Center(solver)); /* also a good place to begin the others from */
+  PetscCall(EqmMoebiusCenter(solver)); /* also a good place to begin the others from */
   if (set->has_fix) PetscCall(Fix(solver));
   if (set->align[0]) PetscCall(Align(solver));
   if ((int)set->moebius == MOEBIUS_AREA) PetscCall(EqmMoebiusLeastArea(solver, &solver->place));

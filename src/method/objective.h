@@ -35,6 +35,9 @@ PETSC_INTERN PetscErrorCode EqmVertexMass(EqmSolver solver, const PetscReal **ma
 
 /* Options for it. Collective. */
 PETSC_INTERN PetscErrorCode EqmConformalAsk(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+/* The Mobius map that brings the mass centre of a map to the sphere to the sphere's own, 004 Definition 2.3
+   (src/method/normalise.c). Collective. */
+PETSC_INTERN PetscErrorCode EqmMoebiusCenter(EqmSolver solver);
 /* The Mobius map after which the normalised authalic energy is least (src/method/moebius_area.c). Collective. */
 PETSC_INTERN PetscErrorCode EqmMoebiusLeastArea(EqmSolver solver, EqmPlace *place);
 /* The Mobius map that makes an angle-preserving map of a closed surface unique (src/method/normalise.c). Collective. */

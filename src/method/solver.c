@@ -53,6 +53,18 @@ PetscErrorCode EqmSolverSum(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmSolverAccept(EqmSolver solver, const EqmPlace *trial, const PetscReal *image, PetscReal objective,
+                               PetscReal step_length)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCopy(solver->domain, trial, &solver->place));
+  PetscCall(PetscArraycpy(solver->image, image, solver->mesh->num_local_cells));
+  PetscCall(EqmSolverSum(solver));
+  solver->objective = objective;
+  solver->step_length = step_length;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmSolverBegin(EqmSolver solver)
 {
   const EqmMesh mesh = solver->mesh;

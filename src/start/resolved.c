@@ -53,17 +53,6 @@ PetscErrorCode EqmSphereSmallestImage(EqmSolver solver, PetscReal *smallest)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Centre(EqmSolver solver)
-{
-  const PetscReal *mass;
-  PetscReal offset;
-
-  PetscFunctionBegin;
-  PetscCall(EqmVertexMass(solver, &mass));
-  PetscCall(EqmPlaceCenter(solver->domain, mass, &solver->place, &offset));
-  PetscFunctionReturn(0);
-}
-
 /* Solve for one cap, then the opposite one, and so on, for as long as the Dirichlet energy of the angle weights falls:
    the linear map's faults, around its pinned triangle, are gone after a few. */
 static PetscErrorCode ImproveByCaps(EqmSolver solver)
@@ -81,7 +70,7 @@ static PetscErrorCode ImproveByCaps(EqmSolver solver)
     if (before - energy < least_fall * energy) break;
     before = energy;
   }
-  PetscCall(Centre(solver));
+  PetscCall(EqmMoebiusCenter(solver));
   PetscFunctionReturn(0);
 }
 

@@ -270,18 +270,6 @@ static PetscErrorCode StartTutteOnSphere(EqmSolver solver, const StartRow *row, 
   PetscFunctionReturn(0);
 }
 
-/* Bring the mass centre of a first map to the sphere's. */
-static PetscErrorCode CenterStart(EqmSolver solver)
-{
-  const PetscReal *mass;
-  PetscReal offset;
-
-  PetscFunctionBegin;
-  PetscCall(EqmVertexMass(solver, &mass));
-  PetscCall(EqmPlaceCenter(solver->domain, mass, &solver->place, &offset));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode StartResolved(EqmSolver solver, const StartRow *row, PetscInt steps)
 {
   (void)row;
@@ -295,7 +283,7 @@ static PetscErrorCode StartConformal(EqmSolver solver, const StartRow *row, Pets
 {
   PetscFunctionBegin;
   PetscCall(EqmSphereLinear(solver, solver->problem->objective->fixed_metric));
-  PetscCall(CenterStart(solver));
+  PetscCall(EqmMoebiusCenter(solver));
   PetscFunctionReturn(0);
 }
 
@@ -315,6 +303,6 @@ PetscErrorCode EqmStart(EqmSolver solver)
   PetscCall(FindRow(solver->problem, solver->settings.start, &row));
   PetscCall(row->run(solver, row, solver->settings.start_steps >= 0 ? solver->settings.start_steps : row->steps));
   PetscCall(EqmPlaceMakeFrames(solver->domain, &solver->place));
-  if (solver->settings.center_start) PetscCall(CenterStart(solver));
+  if (solver->settings.center_start) PetscCall(EqmMoebiusCenter(solver));
   PetscFunctionReturn(0);
 }
