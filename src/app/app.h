@@ -58,6 +58,7 @@ PETSC_INTERN PetscErrorCode EqmPrintRepair(const EqmRepair *repair);
 
 PETSC_INTERN PetscErrorCode EqmCheckOutput(const char *mesh, const char *files);
 PETSC_INTERN PetscErrorCode EqmSweepOutput(const char *files);
+PETSC_INTERN PetscErrorCode EqmCloseBooks(EqmLedger ledger, EqmMap map);
 PETSC_INTERN PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ...);
 
 /* Fail with EQM_ERR_USAGE if an option was given that nobody asked for. Call after all options have been read, before

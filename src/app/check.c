@@ -197,26 +197,14 @@ static char *MakeSummary(const CheckReport *report, const char *message)
 
 static PetscErrorCode WriteSummary(const CheckReport *report, const char *file)
 {
-  char message[EQM_MESSAGE_MAX], error[EQM_MESSAGE_MAX] = "";
-  PetscErrorCode code = 0;
-  PetscMPIInt rank;
+  char message[EQM_MESSAGE_MAX], *text;
   PetscBool fatal;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   PetscCall(EqmDiagnosisDescribe(&report->diagnosis, NULL, &fatal, message, sizeof(message)));
-  if (rank == 0) {
-    EqmAtomicFile out;
-    char *const text = MakeSummary(report, message);
-
-    code = EqmAtomicOpen(file, &out, error, sizeof(error));
-    if (!code) {
-      EqmAtomicPrint(&out, "%s\n", text);
-      code = EqmAtomicCommit(&out, error, sizeof(error));
-    }
-    cJSON_free(text);
-  }
-  PetscCall(EqmAgree(PETSC_COMM_WORLD, code, error));
+  text = MakeSummary(report, message);
+  PetscCall(EqmAtomicPrintFile(PETSC_COMM_WORLD, file, EqmAtomicPrintLine, text));
+  cJSON_free(text);
   PetscFunctionReturn(0);
 }
 

@@ -93,26 +93,16 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   PetscFunctionReturn(0);
 }
 
-/* The seconds, the memory: what is known only at the end. */
-static PetscErrorCode CloseBooks(EqmLedger ledger, EqmMap map)
-{
-  PetscFunctionBegin;
-  map->threads = omp_get_max_threads();
-  PetscCall(EqmLedgerGetSeconds(ledger, map->phase_seconds, map->event_seconds, &map->total_seconds));
-  PetscCall(EqmGetPeakMemory(PETSC_COMM_WORLD, &map->memory_max_per_rank, &map->memory_total));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap map)
 {
   PetscFunctionBegin;
-  PetscCall(CloseBooks(ledger, map));
+  PetscCall(EqmCloseBooks(ledger, map));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
   if (map->status != EQM_STATUS_STOPPED) PetscCall(EqmMapWrite(map, options->output)); /* there is the checkpoint */
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   if (options->has_histogram) PetscCall(EqmMapWriteHistogram(map, options->histogram));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
-  PetscCall(CloseBooks(ledger, map));
+  PetscCall(EqmCloseBooks(ledger, map));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,8 @@
-/* Whether results can be written where the user wants them: asked before the run, not after it. */
+/* Whether results can be written where the user wants them, asked before the run, not after it; and what the run has
+   cost, known only then. */
 #include "app.h"
 #include "base/atomicfile.h"
+#include <omp.h>
 #include <sys/stat.h>
 
 static PetscBool IsSameFile(const char *a, const char *b)
@@ -62,5 +64,17 @@ PetscErrorCode EqmSweepOutput(const char *files)
   PetscCall(PetscStrToArray(files, ',', &count, &names));
   for (int k = 0; k < count && rank == 0; k++) EqmAtomicSweep(names[k]);
   PetscCall(PetscStrToArrayDestroy(count, names));
+  PetscFunctionReturn(0);
+}
+
+/* EqmCloseBooks - put into the map what the run has cost so far: threads, seconds, memory.
+
+   Collective on PETSC_COMM_WORLD. */
+PetscErrorCode EqmCloseBooks(EqmLedger ledger, EqmMap map)
+{
+  PetscFunctionBegin;
+  map->threads = omp_get_max_threads();
+  PetscCall(EqmLedgerGetSeconds(ledger, map->phase_seconds, map->event_seconds, &map->total_seconds));
+  PetscCall(EqmGetPeakMemory(PETSC_COMM_WORLD, &map->memory_max_per_rank, &map->memory_total));
   PetscFunctionReturn(0);
 }

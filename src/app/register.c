@@ -51,27 +51,18 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const RegisterO
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CloseBooks(EqmLedger ledger, EqmMap map)
-{
-  PetscFunctionBegin;
-  map->threads = omp_get_max_threads();
-  PetscCall(EqmLedgerGetSeconds(ledger, map->phase_seconds, map->event_seconds, &map->total_seconds));
-  PetscCall(EqmGetPeakMemory(PETSC_COMM_WORLD, &map->memory_max_per_rank, &map->memory_total));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration)
 {
   EqmMap map;
 
   PetscFunctionBegin;
   PetscCall(EqmRegistrationGetMap(registration, &map));
-  PetscCall(CloseBooks(ledger, map));
+  PetscCall(EqmCloseBooks(ledger, map));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
   PetscCall(EqmMapWrite(map, options->output));
   PetscCall(EqmRegistrationWriteFrames(registration, options->output));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
-  PetscCall(CloseBooks(ledger, map));
+  PetscCall(EqmCloseBooks(ledger, map));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));
   PetscFunctionReturn(0);
 }

@@ -260,3 +260,35 @@ void EqmAtomicSweep(const char *path)
   }
   (void)closedir(directory);
 }
+
+/* EqmAtomicPrintLine - a printer: a text and a newline; NULL if there was no memory for the text. Not collective. */
+void EqmAtomicPrintLine(EqmAtomicFile *file, void *text)
+{
+  if (text)
+    EqmAtomicPrint(file, "%s\n", (const char *)text);
+  else
+    file->error_number = ENOMEM;
+}
+
+/* EqmAtomicPrintFile - rank 0 writes a file whose contents `print` prints; all ranks learn how it ended.
+
+   Collective; `print` runs on rank 0 only. Errors: EQM_ERR_IO on all ranks. */
+PetscErrorCode EqmAtomicPrintFile(MPI_Comm comm, const char *path, EqmAtomicPrinter print, void *context)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode error = 0;
+  EqmAtomicFile file;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    error = EqmAtomicOpen(path, &file, message, sizeof(message));
+    if (!error) {
+      print(&file, context);
+      error = EqmAtomicCommit(&file, message, sizeof(message));
+    }
+  }
+  PetscCall(EqmAgree(comm, error, message));
+  PetscFunctionReturn(0);
+}

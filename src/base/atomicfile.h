@@ -1,6 +1,7 @@
 /* Files that are there complete or not at all: written under a temporary name in the same directory, flushed to the
-   disk, renamed. For one rank; nothing here is collective and nothing raises a PETSc error: functions return 0 or
-   EQM_ERR_IO and put what happened into `error`, so that the caller can clean up and hand both to EqmAgree.
+   disk, renamed. A text that one function prints goes to EqmAtomicPrintFile, which is collective. All else is for one
+   rank and raises no PETSc error: functions return 0 or EQM_ERR_IO and put what happened into `error`, so that the
+   caller can clean up and hand both to EqmAgree.
 
        EqmAtomicFile out;
        code = EqmAtomicOpen(path, &out, error, sizeof(error));
@@ -33,5 +34,10 @@ PETSC_INTERN void EqmAtomicPrintReals(EqmAtomicFile *file, PetscInt count, const
 PETSC_INTERN PetscErrorCode EqmAtomicCommit(EqmAtomicFile *file, char *error, size_t length);
 PETSC_INTERN void EqmAtomicAbort(EqmAtomicFile *file);
 PETSC_INTERN void EqmAtomicSweep(const char *path);
+
+/* Prints a file's contents; where memory runs out, sets error_number. */
+typedef void (*EqmAtomicPrinter)(EqmAtomicFile *file, void *context);
+PETSC_INTERN void EqmAtomicPrintLine(EqmAtomicFile *file, void *text);
+PETSC_INTERN PetscErrorCode EqmAtomicPrintFile(MPI_Comm comm, const char *path, EqmAtomicPrinter print, void *context);
 
 #endif

@@ -16,29 +16,20 @@ static void PrintRow(EqmAtomicFile *file, const EqmHistoryRow *row)
   EqmAtomicPrint(file, "\n");
 }
 
-static PetscErrorCode WriteOnRoot(EqmMap map, const char *name, char *message, size_t length)
+static void PrintHistory(EqmAtomicFile *file, void *context)
 {
-  EqmAtomicFile file;
-  PetscErrorCode error = EqmAtomicOpen(name, &file, message, length);
+  const EqmMap map = context;
 
-  if (error) return error;
-  EqmAtomicPrint(&file, "iteration,energy,sd,folds,step,gradient_norm,evaluations,factorizations,"
-                        "coupled_factorizations,solves,seconds\n");
-  for (PetscInt i = 0; i < map->num_history; i++) PrintRow(&file, &map->history[i]);
-  return EqmAtomicCommit(&file, message, length);
+  EqmAtomicPrint(file, "iteration,energy,sd,folds,step,gradient_norm,evaluations,factorizations,"
+                       "coupled_factorizations,solves,seconds\n");
+  for (PetscInt i = 0; i < map->num_history; i++) PrintRow(file, &map->history[i]);
 }
 
 /* Write the history as CSV, all digits, whole or not at all. Errors: EQM_ERR_IO on all ranks. Collective; rank 0
    writes. */
 PetscErrorCode EqmMapWriteHistory(EqmMap map, const char *file)
 {
-  char message[EQM_MESSAGE_MAX] = "";
-  PetscErrorCode error = 0;
-  PetscMPIInt rank;
-
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(map->soup->comm, &rank));
-  if (rank == 0) error = WriteOnRoot(map, file, message, sizeof(message));
-  PetscCall(EqmAgree(map->soup->comm, error, message));
+  PetscCall(EqmAtomicPrintFile(map->soup->comm, file, PrintHistory, map));
   PetscFunctionReturn(0);
 }

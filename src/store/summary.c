@@ -180,12 +180,11 @@ static void AddFigure(cJSON *root, const EqmMapFigure *figure)
     AddNumber(group, key, figure->value);
 }
 
-static PetscErrorCode WriteOnRoot(EqmMap map, const char *name, char *message, size_t length)
+/* NULL: there is no memory for it. */
+static char *MakeSummary(EqmMap map)
 {
-  cJSON *root = cJSON_CreateObject();
+  cJSON *const root = cJSON_CreateObject();
   char *text;
-  PetscErrorCode error = EQM_ERR_IO;
-  EqmAtomicFile file;
 
   AddRun(root, map);
   if (map->mended) AddRepair(root, &map->repair);
@@ -195,28 +194,17 @@ static PetscErrorCode WriteOnRoot(EqmMap map, const char *name, char *message, s
   AddCost(root, map);
   text = cJSON_Print(root);
   cJSON_Delete(root);
-  (void)snprintf(message, length, "cannot write '%.1000s': out of memory", name);
-  if (!text) return error;
-  error = EqmAtomicOpen(name, &file, message, length);
-  if (!error) {
-    EqmAtomicPrint(&file, "%s\n", text);
-    error = EqmAtomicCommit(&file, message, length);
-  }
-  cJSON_free(text);
-  return error;
+  return text;
 }
 
 /* Write the summary of a run as JSON, whole or not at all. Errors: EQM_ERR_IO on all ranks. Collective; rank 0 writes.
  */
 PetscErrorCode EqmMapWriteSummary(EqmMap map, const char *file)
 {
-  char message[EQM_MESSAGE_MAX] = "";
-  PetscErrorCode error = 0;
-  PetscMPIInt rank;
+  char *const text = MakeSummary(map);
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(map->soup->comm, &rank));
-  if (rank == 0) error = WriteOnRoot(map, file, message, sizeof(message));
-  PetscCall(EqmAgree(map->soup->comm, error, message));
+  PetscCall(EqmAtomicPrintFile(map->soup->comm, file, EqmAtomicPrintLine, text));
+  cJSON_free(text);
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,7 @@
 /* The XDMF file beside a result: XML that tells ParaView what the HDF5 file holds. */
 #include "store.h"
 #include "base/atomicfile.h"
+#include <errno.h>
 #include <libxml/xmlwriter.h>
 #include <string.h>
 
@@ -134,39 +135,35 @@ static PetscBool Compose(EqmMap map, const char *result, Body body, PetscInt num
   return writer.fine;
 }
 
-/* NAME.h5 -> NAME`suffix`. */
-static PetscErrorCode WriteOnRoot(EqmMap map, const char *result_file, const char *suffix, Body body,
-                                  PetscInt num_frames, char *message, size_t length)
-{
-  const char *slash = strrchr(result_file, '/');
-  char name[PETSC_MAX_PATH_LEN];
-  xmlBufferPtr buffer = xmlBufferCreate();
-  PetscErrorCode error = EQM_ERR_IO;
-  EqmAtomicFile file;
+typedef struct {
+  EqmMap map;
+  const char *result; /* without its folder */
+  Body body;
+  PetscInt num_frames;
+} Contents;
 
-  (void)snprintf(name, sizeof(name), "%.*s%s", (int)(strlen(result_file) - strlen(".h5")), result_file, suffix);
-  (void)snprintf(message, length, "cannot write '%.1000s': out of memory", name);
-  if (buffer && Compose(map, slash ? slash + 1 : result_file, body, num_frames, buffer)) {
-    error = EqmAtomicOpen(name, &file, message, length);
-    if (!error) {
-      EqmAtomicWrite(&file, xmlBufferContent(buffer), (size_t)xmlBufferLength(buffer));
-      error = EqmAtomicCommit(&file, message, length);
-    }
-  }
+static void Print(EqmAtomicFile *file, void *context)
+{
+  const Contents *const c = context;
+  const xmlBufferPtr buffer = xmlBufferCreate();
+
+  if (buffer && Compose(c->map, c->result, c->body, c->num_frames, buffer))
+    EqmAtomicWrite(file, xmlBufferContent(buffer), (size_t)xmlBufferLength(buffer));
+  else
+    file->error_number = ENOMEM;
   if (buffer) xmlBufferFree(buffer);
-  return error;
 }
 
+/* NAME.h5 -> NAME`suffix`. */
 static PetscErrorCode Write(EqmMap map, const char *result_file, const char *suffix, Body body, PetscInt num_frames)
 {
-  char message[EQM_MESSAGE_MAX] = "";
-  PetscErrorCode error = 0;
-  PetscMPIInt rank;
+  const char *const slash = strrchr(result_file, '/');
+  Contents contents = {map, slash ? slash + 1 : result_file, body, num_frames};
+  char name[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(map->soup->comm, &rank));
-  if (rank == 0) error = WriteOnRoot(map, result_file, suffix, body, num_frames, message, sizeof(message));
-  PetscCall(EqmAgree(map->soup->comm, error, message));
+  (void)snprintf(name, sizeof(name), "%.*s%s", (int)(strlen(result_file) - strlen(".h5")), result_file, suffix);
+  PetscCall(EqmAtomicPrintFile(map->soup->comm, name, Print, &contents));
   PetscFunctionReturn(0);
 }
 
