@@ -41,9 +41,13 @@ PETSC_EXTERN PetscErrorCode EqmImageDerivativesOf(EqmDomain domain, EqmMeasureKi
    cell. Collective. */
 PETSC_EXTERN PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *place, PetscReal *scratch,
                                           PetscInt64 *folds);
+/* How many triangles of the boundary of a map to the ball do not look outward: det not positive. The volumes inside
+   need not tell. Collective. */
+PETSC_EXTERN PetscErrorCode EqmImageBoundaryFolds(EqmDomain domain, const EqmPlace *place, PetscInt64 *folds);
 
 /* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), in a form free of cancellation) and, if wanted, its
-   gradient in degrees of freedom, from dE/da = 2 (r - 1) - E/A. `a` (per local cell) is scratch that returns the image
+   gradient in degrees of freedom, from dE/da = 2 (r - 1) - E/A. Where A <= 0, beyond a pole of E from where it falls
+   without end, it is infinite. `a` (per local cell) is scratch that returns the image
    measures. Counts one evaluation. Collective. */
 PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy,
                                               Vec gradient);

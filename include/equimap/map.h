@@ -81,6 +81,7 @@ struct _p_EqmMap {
   PetscInt ranks, threads;
   PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS], total_seconds;
   PetscInt64 memory_max_per_rank, memory_total, num_boundary_vertices;
+  PetscInt64 boundary_folds;        /* maps to the ball: triangles of the boundary that do not look outward */
   PetscInt num_hessian_eigenvalues; /* where they were asked for: the smallest of the Hessian at the result */
   PetscReal *hessian_eigenvalues;
   EqmMap mended;          /* where the input was mended first: the map of the mended mesh; referenced, not owned */

@@ -147,7 +147,9 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
   if (!is_solid)
     PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean,
                           (double)d->angle_error.p50));
-  PetscCall(PetscPrintf(comm, "  folds         %" PetscInt64_FMT "\n", d->folds));
+  PetscCall(PetscPrintf(comm, "  folds         %" PetscInt64_FMT, d->folds));
+  if (is_solid) PetscCall(PetscPrintf(comm, "   on the boundary %" PetscInt64_FMT, map->boundary_folds));
+  PetscCall(PetscPrintf(comm, "\n"));
   PetscCall(PetscPrintf(comm,
                         "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT
                         " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves\n",

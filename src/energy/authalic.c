@@ -13,7 +13,7 @@ PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscR
   PetscCall(EqmImageSum(mesh, a, &totals));
   PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
   work->evaluations++;
-  *energy = totals.energy;
+  *energy = totals.total > 0. ? totals.energy : INFINITY;
   if (!gradient) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(mesh->num_local_cells, &slope, domain->dim * mesh->num_owned, &ambient));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {

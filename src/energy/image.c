@@ -68,6 +68,25 @@ PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *place, PetscReal 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmImageBoundaryFolds(EqmDomain domain, const EqmPlace *place, PetscInt64 *folds)
+{
+  const EqmMesh mesh = domain->mesh;
+  PetscInt64 count = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
+    const PetscInt *const v = mesh->boundary_facets + 3 * f;
+    const PetscReal *p[EQM_MOST_CORNERS];
+    PetscInt lowest = v[0]; /* its owner counts the triangle */
+    for (PetscInt a = 1; a < 3; a++) lowest = mesh->global[v[a]] < mesh->global[lowest] ? v[a] : lowest;
+    if (lowest >= mesh->num_owned) continue;
+    Corners(3, 3, v, place->x, p);
+    count += !(EqmHalfDet(p[0], p[1], p[2]) > 0.);
+  }
+  PetscCall(MPIU_Allreduce(&count, folds, 1, MPIU_INT64, MPI_SUM, mesh->comm));
+  PetscFunctionReturn(0);
+}
+
 /* Sums of one range of owned cells. Each runs in LANES interleaved parts, for one addition must wait for the one
    before; the parts are added in a fixed order. */
 enum { LANES = 4 };

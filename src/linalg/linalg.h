@@ -109,6 +109,8 @@ struct _p_EqmLinear {
 
 /* Ask for the options of linear solvers, with help: -linear_solver, -memory_limit. */
 PETSC_INTERN PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject);
+/* Hand what was asked for on to a run inside this one, which has options of its own. */
+PETSC_INTERN PetscErrorCode EqmLinearPassOptions(PetscOptions options);
 PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
                                             PetscBool coupled, EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearEstimate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,

@@ -10,26 +10,6 @@ enum { MOST_FRONT = 8000 };
 static const PetscReal exact = 1e-10;
 static const PetscReal gib = 1024. * 1024. * 1024.;
 
-PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject)
-{
-  PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
-  PetscReal limit = 0.;
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsEnum("-linear_solver",
-                             "what solves with matrices; substructure and mumps are for several ranks, cholmod for one",
-                             "EqmLinearCreate", EqmSolverKinds, kind, &kind, NULL));
-  PetscCall(
-      PetscOptionsReal("-memory_limit",
-                       "at most so many GiB per rank for factors; beyond, -linear_solver auto iterates (0: most of "
-                       "what is free)",
-                       "EqmLinearCreate", limit, &limit, NULL));
-  if (!(limit >= 0.))
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-memory_limit %g: give a number of GiB, 0 for what is free",
-            (double)limit);
-  PetscFunctionReturn(0);
-}
-
 /* Undo what Try has done. */
 static PetscErrorCode Release(EqmLinear linear)
 {

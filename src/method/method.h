@@ -97,7 +97,6 @@ struct _p_EqmSolver {
   PetscInt rows_shown;                   /* num_history at that time */
   PetscInt64 unfolded_from, unfolded_to; /* folds before and after the last unfolding; 0, 0: none was needed */
   EqmHinge hinge;                        /* ball: added to the energy while folds are mended; else NULL */
-  PetscInt64 boundary_folds;             /* ball: folded triangles in the boundary's first map */
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
   char linear_solver[EQM_LINEAR_TEXT]; /* what solves with the method's matrices */

@@ -72,7 +72,7 @@ static PetscErrorCode TryStep(EqmSolver solver, PetscReal alpha, PetscReal *ener
 }
 
 /* 000 (18): the minimum of the parabola through Phi(0), Phi'(0) and Phi at the previous step length. Where the parabola
-   opens downward, the previous length is doubled. */
+   opens downward, the previous length is doubled; where the energy is not finite there is none. */
 static PetscErrorCode ParabolaStep(EqmSolver solver, PetscReal slope, PetscReal *alpha)
 {
   Ncg *const ncg = solver->data;
@@ -81,7 +81,10 @@ static PetscErrorCode ParabolaStep(EqmSolver solver, PetscReal slope, PetscReal 
   PetscFunctionBegin;
   PetscCall(TryStep(solver, ncg->alpha, &energy));
   curvature = energy - solver->objective - ncg->alpha * slope;
-  *alpha = curvature > 0. ? -ncg->alpha * ncg->alpha * slope / (2. * curvature) : 2. * ncg->alpha;
+  if (PetscIsInfOrNanReal(energy))
+    *alpha = .1 * ncg->alpha;
+  else
+    *alpha = curvature > 0. ? -ncg->alpha * ncg->alpha * slope / (2. * curvature) : 2. * ncg->alpha;
   PetscFunctionReturn(0);
 }
 
@@ -162,7 +165,7 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   if (!(slope < 0.)) PetscFunctionReturn(0);
   PetscCall(ParabolaStep(solver, slope, &alpha));
   PetscCall(Safeguard(solver, slope, &alpha, &energy));
-  if (alpha == 0.) PetscFunctionReturn(0);
+  if (alpha == 0. || PetscIsInfOrNanReal(energy)) PetscFunctionReturn(0);
   PetscCall(VecDot(ncg->preconditioned, ncg->gradient, &old_product));
   PetscCall(VecCopy(ncg->gradient, ncg->old_gradient));
   PetscCall(VecCopy(ncg->preconditioned, ncg->old_preconditioned));

@@ -272,6 +272,8 @@ PetscErrorCode EqmSolverGetMap(EqmSolver solver, EqmSoup soup, EqmMap *map)
   PetscCall(EqmMapCreate(soup, solver->domain->dim, map));
   PetscCall(EqmMeshVerticesToInput(solver->mesh, soup, solver->domain->dim, solver->place.x, (*map)->coordinates));
   PetscCall(EqmMapMeasure(*map, solver->mesh, solver->place.x));
+  if (solver->mesh->cell_size == 4)
+    PetscCall(EqmImageBoundaryFolds(solver->domain, &solver->place, &(*map)->boundary_folds));
   PetscCall(TakeHistory(solver, *map));
   PetscFunctionReturn(0);
 }

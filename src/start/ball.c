@@ -84,7 +84,8 @@ static PetscErrorCode PlaceMesh(EqmSolver solver, EqmPlace *place)
   PetscFunctionReturn(0);
 }
 
-/* Map the surface to the sphere with options of its own; what the run does and how it ends concerns the start only. */
+/* Map the surface to the sphere with options of its own, and the same solvers; what the run does and how it ends
+ * concerns the start only. */
 static PetscErrorCode MapSurface(EqmSolver solver, EqmMesh surface, EqmSolver *sphere)
 {
   const EqmSettings *const set = &solver->settings;
@@ -101,6 +102,7 @@ static PetscErrorCode MapSurface(EqmSolver solver, EqmMesh surface, EqmSolver *s
                           set->boundary_start));
   PetscCall(PetscOptionsCreate(&options));
   PetscCall(PetscOptionsInsertString(options, text));
+  PetscCall(EqmLinearPassOptions(options));
   PetscCall(PetscOptionsPush(options));
   PetscCall(EqmSolverCreate(surface, "sphere", sphere));
   PetscCall(EqmSolverSetFromOptions(*sphere));
@@ -122,6 +124,7 @@ static PetscErrorCode CountWork(EqmLedger from, EqmLedger to)
   all->factorizations += part->factorizations;
   all->coupled_factorizations += part->coupled_factorizations;
   all->solves += part->solves;
+  all->cg_iterations += part->cg_iterations;
   PetscFunctionReturn(0);
 }
 
@@ -140,7 +143,11 @@ static PetscErrorCode PlaceBoundary(EqmSolver solver, EqmPlace *place)
   PetscCall(EqmLedgerCreate(solver->comm, &ledger));
   PetscCall(EqmMeshCreate(surface->soup, ledger, &mesh));
   PetscCall(MapSurface(solver, mesh, &sphere));
-  solver->boundary_folds = sphere->totals.folds;
+  if (sphere->totals.folds > 0 && !solver->settings.quiet)
+    PetscCall(PetscPrintf(solver->comm,
+                          "the first map of the boundary has %" PetscInt64_FMT
+                          " folded triangles: folds of the solid are likely\n",
+                          sphere->totals.folds));
   PetscCall(PetscMalloc1(3 * (surface->soup->vertex_end - surface->soup->vertex_start), &slab));
   PetscCall(EqmMeshVerticesToInput(mesh, surface->soup, 3, sphere->place.x, slab));
   PetscCall(EqmSurfaceToSolid(surface, 3, slab, place->x));

@@ -160,6 +160,7 @@ static PetscErrorCode PutOutcome(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5PutText(h5, "message", map->message));
   PetscCall(EqmH5PutInteger(h5, "iterations", map->iterations));
   PetscCall(EqmH5PutInteger(h5, "folds", map->distortion.folds));
+  if (map->soup->cell_size == 4) PetscCall(EqmH5PutInteger(h5, "boundary_folds", map->boundary_folds));
   for (int k = 0; k < LENGTH(map_reals); k++) {
     const PetscReal *value = (const PetscReal *)((const char *)map + map_reals[k].offset);
     PetscCall(EqmH5PutReal(h5, map_reals[k].path, *value));

@@ -116,6 +116,7 @@ static void AddQuality(cJSON *root, EqmMap map)
   AddAngle(group, "median", flat, distortion->quasiconformal.p50);
   AddAngle(group, "max", flat, distortion->quasiconformal.max);
   AddCount(root, "folds", distortion->folds);
+  if (!flat) AddCount(root, "boundary_folds", map->boundary_folds);
 }
 
 /* Only where they were asked for. */

@@ -293,7 +293,7 @@ static PetscErrorCode TestSolid(void)
   TestMesh test;
   EqmDomain domain;
   EqmPlace place;
-  PetscReal *a;
+  PetscReal *a, energy;
   PetscInt64 folds;
 
   PetscFunctionBegin;
@@ -306,9 +306,15 @@ static PetscErrorCode TestSolid(void)
   PetscCall(TestShakenBall(domain, 5, 0., &place));
   PetscCall(EqmImageFolds(domain, &place, a, &folds));
   CHECK(folds == 0, "%d folds", (int)folds);
+  PetscCall(EqmImageBoundaryFolds(domain, &place, &folds));
+  CHECK(folds == 0, "%d folds of the boundary", (int)folds);
   for (PetscInt v = 0; v < test.mesh->num_local; v++) place.x[3 * v] *= -1.;
   PetscCall(EqmImageFolds(domain, &place, a, &folds));
   CHECK(folds == test.mesh->num_cells, "%d folds in a mirrored map", (int)folds);
+  PetscCall(EqmImageBoundaryFolds(domain, &place, &folds));
+  CHECK(folds == 2 * test.mesh->num_boundary_vertices - 4, "%d folds of a mirrored boundary", (int)folds);
+  PetscCall(EqmAuthalicEnergy(domain, &place, a, &energy, NULL));
+  CHECK(PetscIsInfReal(energy) && energy > 0., "energy %g: a descent could end in a mirrored map", (double)energy);
   PetscCall(PetscFree(a));
   PetscCall(EqmPlaceDestroy(&place));
   PetscCall(EqmDomainDestroy(&domain));

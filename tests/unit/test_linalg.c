@@ -2,6 +2,7 @@
  */
 #include "support/testing.h"
 #include <math.h>
+#include <string.h>
 
 enum { MOST_RHS = 4 };
 
@@ -302,10 +303,40 @@ static PetscErrorCode TestOnMesh(const char *shape, PetscInt n, const char *part
   PetscFunctionReturn(0);
 }
 
+/* A run inside another takes over what concerns solvers, and nothing else. */
+static PetscErrorCode TestPassedOptions(void)
+{
+  static const char *const options[] = {"-linear_solver multigrid -max_it 7 -multigrid_ksp_view", "-memory_limit 1e-3"};
+  PetscOptions outer, inner;
+  PetscReal limit = 0.;
+  PetscBool found[4];
+  char solver[32] = "";
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsCreate(&inner));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(options); k++) {
+    PetscCall(PetscOptionsCreate(&outer));
+    PetscCall(PetscOptionsInsertString(outer, options[k]));
+    PetscCall(PetscOptionsPush(outer));
+    PetscCall(EqmLinearPassOptions(inner));
+    PetscCall(PetscOptionsPop());
+    PetscCall(PetscOptionsDestroy(&outer));
+  }
+  PetscCall(PetscOptionsGetString(inner, NULL, "-linear_solver", solver, sizeof(solver), &found[0]));
+  PetscCall(PetscOptionsHasName(inner, NULL, "-max_it", &found[1]));
+  PetscCall(PetscOptionsHasName(inner, NULL, "-multigrid_ksp_view", &found[2]));
+  PetscCall(PetscOptionsGetReal(inner, NULL, "-memory_limit", &limit, &found[3]));
+  CHECK(found[0] && !strcmp(solver, "multigrid"), "the solver is '%s'", solver);
+  CHECK(!found[1] && found[2] && found[3] && limit == 1e-3, "not these options: limit %g", (double)limit);
+  PetscCall(PetscOptionsDestroy(&inner));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
   PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestPassedOptions());
   PetscCall(TestOnMesh("hills", 900, "-partition metis"));
   PetscCall(TestOnMesh("hills", 300, "-partition slab")); /* shares of many pieces */
   PetscCall(TestOnMesh("hills", 16, "-partition slab"));  /* ranks with nothing inside */
