@@ -1,6 +1,7 @@
-"""Runs that are interrupted and go on: test_restart.py PROGRAM [RANKS [KILLS]]. With KILLS: only so many runs that are killed at
-random moments, on 1, 2 and 3 ranks in turn. Where one rank writes what another reads the figures agree to the solver's tolerance;
-on the same number of ranks to the last bit."""
+"""Runs that are interrupted and go on: test_restart.py PROGRAM [RANKS [KILLS | pairs]]. With KILLS: only so many runs that are
+killed at random moments, on 1, 2 and 3 ranks in turn; with pairs: only runs that begin on 1, 2 or 3 ranks and end on 1, 2 or 3.
+Where one rank writes what another reads the figures agree to the solver's tolerance; on the same number of ranks to the last
+bit."""
 import csv
 import json
 import os
@@ -117,9 +118,9 @@ def methods_of(program, command):
 
 
 def check_methods(program):
-    """Every method of every command goes on to the last bit. On several ranks only what does not solve linear systems: a parallel
-    solver may round in the order in which contributions arrive."""
-    some = (("disk", "hills.obj", "rgd"), ("sphere", "head.obj", "rgd"))
+    """Every method of every command goes on to the last bit; on several ranks, one of each kind."""
+    some = (("disk", "hills.obj", "rgd"), ("disk", "hills.obj", "lm"), ("sphere", "head.obj", "lbfgs"), ("ball", "blob.msh", "newton"),
+            ("ball", "blob.msh", "ncg"))
     every = [(command, mesh, method) for command, mesh in MESHES for method in methods_of(program, command)]
     every += [("disk", "hills.obj", "ncg", "-ncg_refresh", 2), ("disk", "hills.obj", "lm", "-balance", .02),
               ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang")]
@@ -140,15 +141,33 @@ def check_methods(program):
         remove(program, "run.ck", "start.ck")
 
 
+def check_pairs(program, run, pairs, codes=(0,)):
+    """Begun on some ranks and ended on others: the energy of a run that was not interrupted."""
+    program.succeed(*run, *outputs("whole"), codes=codes, ranks=1)
+    then, worst = energy(program, "whole.json"), 0.
+    for begun, ended in pairs:
+        if not os.path.exists(program.file(f"on{begun}.ck")):
+            program.succeed(*run, "-max_it", 3, "-checkpoint", f"on{begun}.ck", *outputs("part"), codes=(4,), ranks=begun)
+        program.succeed(*run, "-restart", f"on{begun}.ck", *outputs("run"), codes=codes, ranks=ended)
+        now = energy(program, "run.json")
+        assert abs(now - then) <= 1e-8 * then, f"{run[0]} {run[3]}, {begun} -> {ended} ranks: {now!r}, not {then!r}"
+        worst = max(worst, abs(now - then) / then)
+    print(f"{run[0]} {run[3]}: energies differ by {worst:.1e} at most")
+    remove(program, "on1.ck", "on2.ck", "on3.ck")
+
+
 def check_other_ranks(program):
-    """A checkpoint of these ranks, read on 1, 2 and 3."""
-    run = ("disk", "hills.obj", "-balance", ".02")
-    program.succeed(*run, *outputs("whole"))
-    program.succeed(*run, "-max_it", 3, "-checkpoint", "run.ck", *outputs("part"), codes=(4,))
-    for ranks in (1, 2, 3):
-        program.succeed(*run, "-restart", "run.ck", *outputs("run"), ranks=ranks)
-        then, now = energy(program, "whole.json"), energy(program, "run.json")
-        assert abs(now - then) <= 1e-8 * then, f"{program.ranks} -> {ranks} ranks: {now!r}, not {then!r}"
+    """One pair here, and on other ranks another; all of them once a night."""
+    check_pairs(program, ("disk", "hills.obj", "-method", "lm", "-balance", ".02"), [(program.ranks, 1 + program.ranks % 2)])
+
+
+def check_all_pairs(program):
+    """On every number of ranks from every number: second-order steps to the minimum, and quasi-Newton steps on the way there."""
+    pairs = [(begun, ended) for begun in (1, 2, 3) for ended in (1, 2, 3)]
+    check_pairs(program, ("disk", "hills.obj", "-method", "lm", "-balance", ".02"), pairs)
+    check_pairs(program, ("disk", "hills.obj", "-method", "lbfgs", "-max_it", 15, *ENDLESS), pairs, codes=(4,))
+    check_pairs(program, ("sphere", "head.obj", "-method", "lbfgs", "-max_it", 15, *ENDLESS), pairs, codes=(4,))
+    check_pairs(program, ("ball", "blob.msh", "-method", "newton", "-max_it", 6, *ENDLESS), pairs, codes=(4,))
 
 
 def spoil(program, name, how):
@@ -349,6 +368,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
         make_meshes(program)
+        if sys.argv[3:] == ["pairs"]:
+            check_all_pairs(program)
+            return 0
         if len(sys.argv) > 3:
             for ranks in (1, 2, 3):
                 check_kills(program, ranks, (int(sys.argv[3]) + 3 - ranks) // 3, random.Random(ranks))
