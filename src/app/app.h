@@ -64,5 +64,8 @@ PETSC_INTERN PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ..
 /* Fail with EQM_ERR_USAGE if an option was given that nobody asked for. Call after all options have been read, before
    the work starts. Collective. */
 PETSC_INTERN PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line);
+/* Options of matrices, vectors and solvers are known only when these are made: say after the run which of them nobody
+   asked for. Collective. */
+PETSC_INTERN PetscErrorCode EqmWarnOfUnusedOptions(void);
 
 #endif

@@ -195,6 +195,7 @@ static PetscErrorCode Run(const EqmCommandLine *line, EqmStatus *status)
       PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
     }
     PetscCall(commands[k].run(line, status));
+    PetscCall(EqmWarnOfUnusedOptions());
     PetscCall(PetscOptionsClearValue(NULL, "-help")); /* or PETSc would add the options of its own last acts */
     PetscFunctionReturn(0);
   }

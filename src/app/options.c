@@ -2,19 +2,40 @@
 #include "app.h"
 #include <string.h>
 
-/* PETSc's own options are read when its objects are made, later than ours: these prefixes are let through. */
-static const char *const petsc_prefixes[] = {"log_",       "malloc",   "info",        "options_",     "ksp_",
-                                             "pc_",        "mat_",     "vec_",        "sf_",          "mg_",
-                                             "error",      "on_error", "fp_",         "start",        "stop_for",
-                                             "debug",      "no_",      "check",       "get_",         "viewer_",
-                                             "nox",        "display",  "hypre_",      "gamg_",        "coarse_",
-                                             "multigrid_", "unfold_",  "saws",        "skip_petscrc", "shared_tmp",
-                                             "threads",    "help",     "hessian_eps_"};
+/* What PETSc asks for later than we do, when it ends or in the middle of the work. */
+static const char *const late_names[] = {
+    "build_twosided",    "citations",     "debugger_pause", "debugger_ranks",
+    "get_total_flops",   "log_threshold", "log_view",       "log_view_memory",
+    "log_view_gpu_time", "malloc_dump",   "malloc_view",    "malloc_view_threshold",
+    "memory_view",       "mpidump",       "not_shared_tmp", "nox",
+    "nox_warning",       "objects_dump",  "options_left",   "options_suppress_deprecated_warnings",
+    "options_view",      "random_seed",   "random_type",    "shared_tmp"};
 
-static PetscBool IsPetscs(const char *name)
+/* What its matrices, vectors and solvers ask for when they are made: all that begins so. */
+static const char *const late_prefixes[] = {"hessian_eps_", "hessian_st_", "mat_",        "multigrid_",
+                                            "sf_",          "unfold_",     "vecscatter_", "vec_"};
+
+/* The options that were let through for their beginnings. */
+enum { MOST_TRUSTED = 32, LONGEST_NAME = 128 };
+static char trusted[MOST_TRUSTED][LONGEST_NAME];
+static PetscInt num_trusted;
+
+static PetscBool IsLate(const char *name)
 {
-  for (size_t k = 0; k < sizeof(petsc_prefixes) / sizeof(petsc_prefixes[0]); k++) {
-    if (!strncmp(name, petsc_prefixes[k], strlen(petsc_prefixes[k])) && strcmp(name, "start")) return PETSC_TRUE;
+  for (size_t k = 0; k < sizeof(late_names) / sizeof(late_names[0]); k++) {
+    if (!strcmp(name, late_names[k])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* May an object ask for it later? EqmWarnOfUnusedOptions knows. */
+static PetscBool IsTrusted(const char *name)
+{
+  for (size_t k = 0; k < sizeof(late_prefixes) / sizeof(late_prefixes[0]); k++) {
+    if (strncmp(name, late_prefixes[k], strlen(late_prefixes[k])) || strlen(name) >= LONGEST_NAME) continue;
+    if (num_trusted == MOST_TRUSTED) return PETSC_FALSE;
+    strcpy(trusted[num_trusted++], name);
+    return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
@@ -28,7 +49,7 @@ PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line)
   PetscFunctionBegin;
   PetscCall(PetscOptionsLeftGet(NULL, &num_left, &names, &values));
   for (PetscInt k = 0; k < num_left; k++) {
-    if (IsPetscs(names[k])) continue;
+    if (IsLate(names[k]) || IsTrusted(names[k])) continue;
     PetscCall(PetscStrlcat(unknown, count++ ? ", -" : "-", sizeof(unknown)));
     PetscCall(PetscStrlcat(unknown, names[k], sizeof(unknown)));
   }
@@ -36,6 +57,23 @@ PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line)
   if (count) {
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "unknown option%s %s; equimap %s --help lists the options of this command",
             count > 1 ? "s" : "", unknown, line->command);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmWarnOfUnusedOptions(void)
+{
+  PetscBool dry_run = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-dry_run", &dry_run, NULL)); /* then nothing was made that could ask */
+  for (PetscInt k = 0; k < num_trusted && !dry_run; k++) {
+    PetscBool used;
+    PetscCall(PetscOptionsUsed(NULL, trusted[k], &used));
+    if (!used)
+      PetscCall(PetscFPrintf(PETSC_COMM_WORLD, PETSC_STDERR,
+                             "equimap: warning: the run had no use for the option -%s; is it spelt right?\n",
+                             trusted[k]));
   }
   PetscFunctionReturn(0);
 }

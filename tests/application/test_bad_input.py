@@ -83,6 +83,9 @@ CASES = [
     (["disk"], USAGE, "mesh"),
     (["disk", "good.obj", "good.off"], USAGE, "2"),
     (["disk", "good.obj", "-max_iter", "3"], USAGE, "-max_iter"),
+    (["disk", "good.obj", "-checkfoo"], USAGE, "-checkfoo"),  # PETSc has options that begin so
+    (["disk", "good.obj", "-start_foo", "3"], USAGE, "-start_foo"),
+    (["disk", "good.obj", "-ksp_rtol", "1e-3"], USAGE, "-ksp_rtol"),  # there is no solver without a prefix
     (["disk", "good.obj", "-method", "magic"], USAGE, "magic"),
     (["disk", "good.obj", "-start", "magic"], USAGE, "magic"),
     (["ball", "missing.msh", "-method", "magic"], USAGE, "magic"),  # options first: the mesh may take minutes to read

@@ -97,6 +97,8 @@ def main(equimap, ranks):
         file.write("maxit: 3\n")
     misspelt = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "misspelt.yaml", expected=(2,))
     assert "unknown option -maxit" in misspelt.stderr
+    unused = run("disk", "patch.obj", "-o", "few.h5", "-max_it", "1", "-multigrid_kps_rtol", "1e-3")
+    assert "no use for the option -multigrid_kps_rtol" in unused.stderr
     quiet = run("disk", "-quiet", "true", "patch.obj", "-o", "few.h5", "-max_it", "1")
     assert "iteration" not in quiet.stdout.split("patch.obj")[0]
     assert not os.path.exists("new.h5")
