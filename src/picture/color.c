@@ -59,29 +59,43 @@ static int Modulo2(double x)
   return (int)(fmod(floor(x), 2.0) + 2.0) % 2;
 }
 
-/* The colour of a point of the image under a checkerboard whose patches all have the same area. Not collective. */
+/* Where a point lies on the board, in patches, and whether its patch is one of those that show how the board lies. */
+static PetscBool OnBoard(EqmPattern pattern, const double image[3], double *along, double *across)
+{
+  const double turn = atan2(image[1], image[0]) / (2 * PETSC_PI) + 1.0;
+  const double radius = hypot(hypot(image[0], image[1]), image[2]);
+  const double height = radius > 0.0 ? image[2] / radius : 0.0;
+
+  switch (pattern) {
+  case EQM_PATTERN_SQUARE:
+  case EQM_PATTERN_DISK_SQUARES:
+    *along = (pattern == EQM_PATTERN_SQUARE ? 16 : 8) * image[0];
+    *across = (pattern == EQM_PATTERN_SQUARE ? 16 : 8) * image[1];
+    return (PetscBool)(floor(*along) == 0.0 || floor(*across) == 0.0);
+  case EQM_PATTERN_DISK:
+    *across = 10 * (image[0] * image[0] + image[1] * image[1]);
+    break;
+  case EQM_PATTERN_SPHERE:
+    *across = 12 * (1.0 + height) / 2;
+    break;
+  case EQM_PATTERN_SPHERE_SQUARES: /* Mercator's; a cap of one colour where they would become too small to see */
+    *across = 24 * atanh(height) / (2 * PETSC_PI);
+    if (fabs(*across) < 12.0) break;
+    *along = *across = 0.0;
+    return PETSC_FALSE;
+  }
+  *along = 24 * turn;
+  return (PetscBool)(floor(*along) == 24.0);
+}
+
+/* The colour of a point of the image under a checkerboard. Not collective. */
 void EqmColorOfPattern(EqmPattern pattern, const double image[3], double rgb[3])
 {
   static const double tones[2][3] = {{0.957, 0.945, 0.910}, {0.227, 0.404, 0.545}};
   static const double marked[2][3] = {{0.988, 0.812, 0.545}, {0.855, 0.420, 0.114}};
-  const double turn = atan2(image[1], image[0]) / (2 * PETSC_PI) + 1.0;
-  double across, along;
-  int odd, mark;
+  double along, across;
+  const PetscBool mark = OnBoard(pattern, image, &along, &across);
+  const int odd = Modulo2(along) ^ Modulo2(across);
 
-  if (pattern == EQM_PATTERN_SQUARE) {
-    along = 16 * image[0];
-    across = 16 * image[1];
-    mark = floor(along) == 0.0 || floor(across) == 0.0;
-  } else if (pattern == EQM_PATTERN_DISK) {
-    along = 24 * turn;
-    across = 10 * (image[0] * image[0] + image[1] * image[1]);
-    mark = floor(along) == 24.0;
-  } else {
-    const double radius = sqrt(image[0] * image[0] + image[1] * image[1] + image[2] * image[2]);
-    along = 24 * turn;
-    across = 12 * (1.0 + (radius > 0.0 ? image[2] / radius : 0.0)) / 2;
-    mark = floor(along) == 24.0;
-  }
-  odd = Modulo2(along) ^ Modulo2(across);
   for (int c = 0; c < 3; c++) rgb[c] = mark ? marked[odd][c] : tones[odd][c];
 }

@@ -71,8 +71,15 @@ typedef struct {
 PETSC_INTERN EqmColorScale EqmColorScaleOf(const PetscReal *ratio, PetscInt count);
 PETSC_INTERN void EqmColorOfRatio(EqmColorScale scale, double ratio, double rgb[3]);
 
-/* A pattern in the image whose pull-back to the surface shows the map. */
-typedef enum { EQM_PATTERN_DISK, EQM_PATTERN_SQUARE, EQM_PATTERN_SPHERE } EqmPattern;
+/* A pattern in the image whose pull-back to the surface shows the map: patches of equal area, or squares, which an
+   angle-preserving map leaves square where they are small. */
+typedef enum {
+  EQM_PATTERN_DISK,
+  EQM_PATTERN_SQUARE,
+  EQM_PATTERN_SPHERE,
+  EQM_PATTERN_DISK_SQUARES,
+  EQM_PATTERN_SPHERE_SQUARES
+} EqmPattern;
 PETSC_INTERN void EqmColorOfPattern(EqmPattern pattern, const double image[3], double rgb[3]);
 
 /* What a picture shows of its faces. */

@@ -16,9 +16,15 @@ typedef struct {
 
 enum { OVERSAMPLING = 2, MANY_FACES = 12000 };
 
+static PetscBool IsConformal(const EqmResult *result)
+{
+  return (PetscBool)!strcmp(result->command, "conformal");
+}
+
 static EqmPattern PatternOf(const EqmResult *result)
 {
-  if (result->dim == 3) return EQM_PATTERN_SPHERE;
+  if (result->dim == 3) return IsConformal(result) ? EQM_PATTERN_SPHERE_SQUARES : EQM_PATTERN_SPHERE;
+  if (IsConformal(result)) return EQM_PATTERN_DISK_SQUARES;
   return strcmp(result->command, "square") ? EQM_PATTERN_DISK : EQM_PATTERN_SQUARE;
 }
 
@@ -99,8 +105,8 @@ static PetscErrorCode DrawPlanar(cairo_t *page, const EqmResult *result, EqmColo
   front = EqmCameraGuess(&faces, result->vertices);
   EqmCameraFit(&flat, &faces, result->images);
   const View views[] = {{"Surface, coloured by area ratio", &faces, result->vertices, normals, front, PETSC_FALSE},
-                        {"Checkerboard of equal areas, pulled back", &faces, result->vertices, normals, front,
-                         PETSC_TRUE},
+                        {IsConformal(result) ? "Squares, pulled back" : "Checkerboard of equal areas, pulled back",
+                         &faces, result->vertices, normals, front, PETSC_TRUE},
                         {"Image, coloured by area ratio", &faces, result->images, NULL, flat, PETSC_FALSE}};
   PetscCall(PaintRow(page, result, scale, views, box, pixels_per_unit));
   PetscCall(PetscFree(normals));
@@ -128,7 +134,8 @@ static PetscErrorCode DrawSphere(cairo_t *page, const EqmResult *result, EqmColo
   PetscCall(EqmFacesNormals(&faces, result->images, result->num_vertices, &image_normals));
   front = EqmCameraGuess(&faces, result->vertices);
   const View views[] = {{"Surface, coloured by area ratio", &faces, result->vertices, normals, front, PETSC_FALSE},
-                        {"Patches of equal area, pulled back", &faces, result->vertices, normals, front, PETSC_TRUE},
+                        {IsConformal(result) ? "Squares, pulled back" : "Patches of equal area, pulled back", &faces,
+                         result->vertices, normals, front, PETSC_TRUE},
                         {"Image, one side", &faces, result->images, image_normals, near, PETSC_FALSE},
                         {"Image, other side", &faces, result->images, image_normals, far, PETSC_FALSE}};
   PetscCall(PaintRow(page, result, scale, views, box, pixels_per_unit));
