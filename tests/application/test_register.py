@@ -12,20 +12,8 @@ import h5py
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from meshes import read_obj, renumber, write_obj  # noqa: E402
 from program import Program  # noqa: E402
-
-
-def read_obj(path):
-    with open(path) as stream:
-        rows = [line.split() for line in stream]
-    vertices = [[float(word) for word in row[1:4]] for row in rows if row and row[0] == "v"]
-    cells = [[int(word.split("/")[0]) - 1 for word in row[1:4]] for row in rows if row and row[0] == "f"]
-    return numpy.array(vertices), numpy.array(cells)
-
-
-def write_obj(program, name, vertices, cells):
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in cells.tolist()]
-    program.write(name, "\n".join(lines) + "\n")
 
 
 def write_h5(program, name, vertices, cells, image=None):
@@ -38,15 +26,6 @@ def write_h5(program, name, vertices, cells, image=None):
 def rotation(seed):
     q, _ = numpy.linalg.qr(numpy.random.RandomState(seed).randn(3, 3))
     return q * numpy.linalg.det(q)
-
-
-def renumber(vertices, cells, seed):
-    """The same mesh with vertices and cells renumbered and cells begun at other corners; the new numbers of the vertices."""
-    random = numpy.random.RandomState(seed)
-    place = random.permutation(len(vertices))
-    moved = numpy.empty_like(vertices)
-    moved[place] = vertices
-    return moved, numpy.array([numpy.roll(cell, random.randint(3)) for cell in place[cells[random.permutation(len(cells))]]]), place
 
 
 def generate(program, shape, count):

@@ -14,33 +14,8 @@ import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 from evaluate import boundary_edges, evaluate  # noqa: E402
+from meshes import read_obj, renumber, write_obj  # noqa: E402
 from program import Program  # noqa: E402
-
-
-def read_obj(path):
-    vertices, cells = [], []
-    with open(path) as stream:
-        for line in stream:
-            words = line.split()
-            if words and words[0] == "v":
-                vertices.append([float(word) for word in words[1:4]])
-            if words and words[0] == "f":
-                cells.append([int(word.split("/")[0]) - 1 for word in words[1:4]])
-    return numpy.array(vertices), numpy.array(cells)
-
-
-def shuffle(program, source, target, seed):
-    """The same surface with vertices and triangles renumbered at random and each triangle begun at another corner."""
-    vertices, cells = read_obj(program.file(source))
-    random = numpy.random.RandomState(seed)
-    place = random.permutation(len(vertices))
-    moved = numpy.empty_like(vertices)
-    moved[place] = vertices
-    cells = place[cells[random.permutation(len(cells))]]
-    cells = numpy.array([numpy.roll(cell, random.randint(3)) for cell in cells])
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in moved.tolist()] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in cells.tolist()]
-    program.write(target, "\n".join(lines) + "\n")
-    return moved, cells
 
 
 def close(got, wanted, tolerance=1e-9, what=""):
@@ -184,7 +159,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
         program.succeed("generate", "hills", "-n", 900, "-seed", 5, "-o", "hills.obj", ranks=1)
-        vertices, cells = shuffle(program, "hills.obj", "shuffled.obj", 1)
+        vertices, cells, _ = renumber(*read_obj(program.file("hills.obj")), 1)
+        write_obj(program, "shuffled.obj", vertices, cells)
         density = 0.5 + numpy.random.RandomState(2).rand(len(cells))
         for command, weight, options in (("disk", None, ()), ("square", None, ("-balance", "0.02")), ("disk", density, ())):
             _, summary = check_run(program, command, "shuffled.obj", vertices, cells, weight, "-max_it", 8, *options)

@@ -14,30 +14,8 @@ import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 from evaluate import evaluate  # noqa: E402
+from meshes import read_obj, renumber, write_obj  # noqa: E402
 from program import Program  # noqa: E402
-
-
-def read_obj(path):
-    with open(path) as stream:
-        rows = [line.split() for line in stream]
-    vertices = [[float(word) for word in row[1:4]] for row in rows if row and row[0] == "v"]
-    cells = [[int(word.split("/")[0]) - 1 for word in row[1:4]] for row in rows if row and row[0] == "f"]
-    return numpy.array(vertices), numpy.array(cells)
-
-
-def write_obj(program, name, vertices, cells):
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in cells.tolist()]
-    program.write(name, "\n".join(lines) + "\n")
-
-
-def shuffle(vertices, cells, seed):
-    """The same surface with vertices and triangles renumbered at random and each triangle begun at another corner."""
-    random = numpy.random.RandomState(seed)
-    place = random.permutation(len(vertices))
-    moved = numpy.empty_like(vertices)
-    moved[place] = vertices
-    cells = place[cells[random.permutation(len(cells))]]
-    return moved, numpy.array([numpy.roll(cell, random.randint(3)) for cell in cells])
 
 
 def determinants(image, cells):
@@ -144,7 +122,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
         program.succeed("generate", "head", "-n", 600, "-seed", 5, "-o", "head.obj", ranks=1)
-        vertices, cells = shuffle(*read_obj(program.file("head.obj")), 1)
+        vertices, cells, _ = renumber(*read_obj(program.file("head.obj")), 1)
         write_obj(program, "mesh.obj", vertices, cells)
         density = 0.5 + numpy.random.RandomState(2).rand(len(cells))
         program.write("density.csv", "cell,density\n" + "".join(f"{c},{value!r}\n" for c, value in enumerate(density.tolist())))

@@ -1,20 +1,7 @@
 /* Whole runs of angle-preserving maps of closed surfaces: small angle errors without folds, the sphere itself, the same
    map on any number of ranks, the same bits for any number of threads. */
-#include "support/testing.h"
+#include "support/runs.h"
 #include "energy/kernel.h"
-#include <omp.h>
-#include <string.h>
-
-static PetscErrorCode Map(TestMesh *test, const char *options, EqmMap *map)
-{
-  EqmSolver solver;
-
-  PetscFunctionBegin;
-  PetscCall(TestSolve(test->mesh, "conformal", options, &solver));
-  PetscCall(EqmSolverGetMap(solver, test->soup, map));
-  PetscCall(EqmSolverDestroy(&solver));
-  PetscFunctionReturn(0);
-}
 
 /* Converged, no folds, small angle errors, few factorisations. */
 static PetscErrorCode TestMethod(const char *shape, PetscInt n, const char *options, PetscReal degrees)
@@ -24,7 +11,7 @@ static PetscErrorCode TestMethod(const char *shape, PetscInt n, const char *opti
 
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 1, &test));
-  PetscCall(Map(&test, options, &map));
+  PetscCall(TestMap(&test, "conformal", options, &map));
   CHECK(map->status == EQM_STATUS_CONVERGED && map->distortion.folds == 0, "%s %s: status %d, %d folds: %s", shape,
         options, (int)map->status, (int)map->distortion.folds, map->message);
   CHECK(map->distortion.angle_error.mean < degrees, "%s %s: angle error %g degrees", shape, options,
@@ -115,49 +102,6 @@ static PetscErrorCode TestExplicitLimit(const char *options, PetscBool stable)
   PetscFunctionReturn(0);
 }
 
-/* The mesh on all ranks together and on each alone. */
-static PetscErrorCode TestRanks(const char *options, PetscReal tolerance)
-{
-  TestMesh test[2];
-  EqmMap map[2];
-
-  PetscFunctionBegin;
-  for (int k = 0; k < 2; k++) {
-    PetscCall(TestMeshCreate(k ? PETSC_COMM_WORLD : PETSC_COMM_SELF, "head", 500, 1, &test[k]));
-    PetscCall(Map(&test[k], options, &map[k]));
-  }
-  const PetscInt first = map[1]->soup->vertex_start;
-  for (PetscInt k = 0; k < 3 * (map[1]->soup->vertex_end - first); k++)
-    CHECK_CLOSE(map[1]->coordinates[k], map[0]->coordinates[3 * first + k], tolerance, 1.);
-  CHECK(map[0]->iterations == map[1]->iterations, "%s: %d iterations, alone %d", options, (int)map[1]->iterations,
-        (int)map[0]->iterations);
-  for (int k = 0; k < 2; k++) {
-    PetscCall(EqmMapDestroy(&map[k]));
-    PetscCall(TestMeshDestroy(&test[k]));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* On one rank two threads change nothing. */
-static PetscErrorCode TestThreads(const char *options)
-{
-  TestMesh test;
-  EqmMap map[2];
-
-  PetscFunctionBegin;
-  PetscCall(TestMeshCreate(PETSC_COMM_SELF, "head", 900, 1, &test));
-  for (int k = 0; k < 2; k++) {
-    omp_set_num_threads(k + 1);
-    PetscCall(Map(&test, options, &map[k]));
-  }
-  omp_set_num_threads(1);
-  CHECK(!memcmp(map[0]->coordinates, map[1]->coordinates, sizeof(PetscReal) * 3 * (size_t)test.soup->num_vertices),
-        "%s: another map with two threads", options);
-  for (int k = 0; k < 2; k++) PetscCall(EqmMapDestroy(&map[k]));
-  PetscCall(TestMeshDestroy(&test));
-  PetscFunctionReturn(0);
-}
-
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
@@ -174,11 +118,11 @@ int main(int argc, char **argv)
   PetscCall(TestSameMap("-method euler-explicit -flow_tol 1e-6", .02));
   PetscCall(TestExplicitLimit("-method euler-explicit -max_it 100 -flow_tol 0", PETSC_TRUE));
   PetscCall(TestExplicitLimit("-method euler-explicit -max_it 100 -flow_tol 0 -flow_step 2", PETSC_FALSE));
-  PetscCall(TestRanks("", 1e-7));
-  PetscCall(TestRanks("-method qiem -max_it 5", 1e-7));
-  PetscCall(TestRanks("-method euler-implicit -max_it 2", 1e-7));
-  PetscCall(TestRanks("-method euler-explicit -max_it 5", 1e-7));
-  PetscCall(TestThreads(""));
+  PetscCall(TestSameOnRanks("head", 500, "conformal", "", 1e-7, 1.));
+  PetscCall(TestSameOnRanks("head", 500, "conformal", "-method qiem -max_it 5", 1e-7, 1.));
+  PetscCall(TestSameOnRanks("head", 500, "conformal", "-method euler-implicit -max_it 2", 1e-7, 1.));
+  PetscCall(TestSameOnRanks("head", 500, "conformal", "-method euler-explicit -max_it 5", 1e-7, 1.));
+  PetscCall(TestSameWithThreads(PETSC_COMM_SELF, "head", 900, "conformal", ""));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }

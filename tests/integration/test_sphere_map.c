@@ -1,20 +1,6 @@
 /* Whole runs to the sphere: small energies without folds, the same map on any number of ranks, the same bits for any
    number of threads, and nothing that depends on where the mesh lies in space or in which units. */
-#include "support/testing.h"
-#include <omp.h>
-#include <string.h>
-
-/* Run and fetch the map in input numbering. */
-static PetscErrorCode Map(TestMesh *test, const char *options, EqmMap *map)
-{
-  EqmSolver solver;
-
-  PetscFunctionBegin;
-  PetscCall(TestSolve(test->mesh, "sphere", options, &solver));
-  PetscCall(EqmSolverGetMap(solver, test->soup, map));
-  PetscCall(EqmSolverDestroy(&solver));
-  PetscFunctionReturn(0);
-}
+#include "support/runs.h"
 
 /* The default ends by itself with a small energy, without folds, with every vertex on the sphere. */
 static PetscErrorCode TestDefault(const char *shape, PetscInt n, PetscReal most)
@@ -24,7 +10,7 @@ static PetscErrorCode TestDefault(const char *shape, PetscInt n, PetscReal most)
 
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 1, &test));
-  PetscCall(Map(&test, "", &map));
+  PetscCall(TestMap(&test, "sphere", "", &map));
   CHECK(map->status == EQM_STATUS_CONVERGED && map->distortion.folds == 0, "%s: status %d, %d folds: %s", shape,
         (int)map->status, (int)map->distortion.folds, map->message);
   CHECK(map->distortion.energy <= most, "%s: energy %g", shape, (double)map->distortion.energy);
@@ -37,59 +23,6 @@ static PetscErrorCode TestDefault(const char *shape, PetscInt n, PetscReal most)
   for (PetscInt k = 1; k < map->num_history; k++)
     CHECK(map->history[k].energy < map->history[0].energy, "iteration %d is worse than the start", (int)k);
   PetscCall(EqmMapDestroy(&map));
-  PetscCall(TestMeshDestroy(&test));
-  PetscFunctionReturn(0);
-}
-
-/* The mesh on all ranks together and on each alone. */
-static PetscErrorCode TestRanks(const char *shape, const char *options, PetscReal tolerance)
-{
-  TestMesh alone, together;
-  EqmMap a, b;
-  PetscReal difference = 0.;
-
-  PetscFunctionBegin;
-  PetscCall(TestMeshCreate(PETSC_COMM_SELF, shape, 600, 1, &alone));
-  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 600, 1, &together));
-  PetscCall(Map(&alone, options, &a));
-  PetscCall(Map(&together, options, &b));
-  const PetscInt first = b->soup->vertex_start, first_cell = b->soup->cell_start;
-  for (PetscInt k = 0; k < 3 * (b->soup->vertex_end - first); k++)
-    difference = PetscMax(difference, PetscAbsReal(b->coordinates[k] - a->coordinates[3 * first + k]));
-  CHECK(difference <= tolerance, "%s %s: a vertex is %g away from where it is on one rank", shape, options,
-        (double)difference);
-  for (PetscInt c = first_cell; c < b->soup->cell_end; c++)
-    CHECK_CLOSE(b->cell_ratio[c - first_cell], a->cell_ratio[c], 100. * tolerance, 1.);
-  CHECK(a->distortion.folds == 0 && b->distortion.folds == 0 && b->iterations == a->iterations,
-        "%s %s: %d iterations, alone %d", shape, options, (int)b->iterations, (int)a->iterations);
-  CHECK_CLOSE(b->distortion.energy, a->distortion.energy, 10. * tolerance, a->distortion.energy + tolerance);
-  CHECK_CLOSE(b->distortion.angle_error.mean, a->distortion.angle_error.mean, 1e3 * tolerance, 1.);
-  CHECK(a->distortion.energy < .5 * a->energy_initial, "%s: the energy has not fallen", options);
-  PetscCall(EqmMapDestroy(&a));
-  PetscCall(EqmMapDestroy(&b));
-  PetscCall(TestMeshDestroy(&alone));
-  PetscCall(TestMeshDestroy(&together));
-  PetscFunctionReturn(0);
-}
-
-/* Two runs with 1 and 2 threads differ in nothing; on several ranks MUMPS adds contributions as they arrive. */
-static PetscErrorCode TestThreads(const char *options)
-{
-  TestMesh test;
-  EqmMap map[2];
-
-  PetscFunctionBegin;
-  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "head", 1500, 1, &test));
-  for (int k = 0; k < 2; k++) {
-    omp_set_num_threads(k + 1);
-    PetscCall(Map(&test, options, &map[k]));
-  }
-  omp_set_num_threads(1);
-  for (PetscInt k = 0; k < 3 * (test.soup->vertex_end - test.soup->vertex_start); k++)
-    CHECK_CLOSE(map[1]->coordinates[k], map[0]->coordinates[k], test.mesh->size == 1 ? 0. : 1e-7, 1.);
-  CHECK(test.mesh->size > 1 || !memcmp(&map[0]->distortion, &map[1]->distortion, sizeof(EqmDistortion)),
-        "%s: other figures with two threads", options);
-  for (int k = 0; k < 2; k++) PetscCall(EqmMapDestroy(&map[k]));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);
 }
@@ -123,7 +56,7 @@ static PetscErrorCode TestInvariance(const char *shape, const char *options)
     PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, shape, 600, 2, &soup));
     if (k == 1) Displace(soup);
     PetscCall(TestMeshFromSoup(soup, &test[k]));
-    PetscCall(Map(&test[k], options, &map[k]));
+    PetscCall(TestMap(&test[k], "sphere", options, &map[k]));
   }
   CHECK(map[0]->num_history == map[1]->num_history && map[0]->num_history >= 5, "%s: %d and %d rows", options,
         (int)map[0]->num_history, (int)map[1]->num_history);
@@ -140,34 +73,20 @@ static PetscErrorCode TestInvariance(const char *shape, const char *options)
   PetscFunctionReturn(0);
 }
 
-/* What cannot be done is told before any work. */
-static PetscErrorCode TestUsage(const char *text)
+/* What does not suit the sphere: options of the plane, an open surface. */
+static PetscErrorCode TestRefusals(void)
 {
-  TestMesh test;
-  PetscOptions options;
-  EqmSolver solver;
-
-  PetscFunctionBegin;
-  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "sphere", 100, 1, &test));
-  PetscCall(TestOptionsBegin(text, &options));
-  PetscCall(EqmSolverCreate(test.mesh, "sphere", &solver));
-  CHECK_FAILS(EQM_ERR_USAGE, EqmSolverSetFromOptions(solver));
-  PetscCall(TestOptionsEnd(&options));
-  PetscCall(EqmSolverDestroy(&solver));
-  PetscCall(TestMeshDestroy(&test));
-  PetscFunctionReturn(0);
-}
-
-/* An open surface is refused. */
-static PetscErrorCode TestOpen(void)
-{
-  TestMesh test;
+  TestMesh closed, open;
   EqmDomain domain;
 
   PetscFunctionBegin;
-  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 100, 1, &test));
-  CHECK_FAILS(EQM_ERR_MESH, EqmDomainCreateSphere(test.mesh, &domain));
-  PetscCall(TestMeshDestroy(&test));
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "sphere", 100, 1, &closed));
+  PetscCall(TestRefused(closed.mesh, "sphere", "-balance .01"));
+  PetscCall(TestRefused(closed.mesh, "sphere", "-start harmonic"));
+  PetscCall(TestMeshDestroy(&closed));
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 100, 1, &open));
+  CHECK_FAILS(EQM_ERR_MESH, EqmDomainCreateSphere(open.mesh, &domain));
+  PetscCall(TestMeshDestroy(&open));
   PetscFunctionReturn(0);
 }
 
@@ -178,19 +97,17 @@ int main(int argc, char **argv)
   PetscCall(TestDefault("head", 900, 2e-7));
   PetscCall(TestDefault("sphere", 900, 2e-7));
 
-  PetscCall(TestRanks("head", "-method fixed-point -max_it 4 -energy_rtol 0", 1e-9));
-  PetscCall(TestRanks("head", "-method lm -max_it 4 -energy_rtol 0", 1e-6));
-  PetscCall(TestRanks("sphere", "-method lm -max_it 3 -energy_rtol 0", 1e-7));
+  PetscCall(TestSameOnRanks("head", 600, "sphere", "-method fixed-point -max_it 4 -energy_rtol 0", 1e-9, .5));
+  PetscCall(TestSameOnRanks("head", 600, "sphere", "-method lm -max_it 4 -energy_rtol 0", 1e-6, .5));
+  PetscCall(TestSameOnRanks("sphere", 600, "sphere", "-method lm -max_it 3 -energy_rtol 0", 1e-7, .5));
 
-  PetscCall(TestThreads("-method fixed-point -max_it 3"));
-  PetscCall(TestThreads("-method lm -max_it 3"));
+  PetscCall(TestSameWithThreads(PETSC_COMM_WORLD, "head", 1500, "sphere", "-method fixed-point -max_it 3"));
+  PetscCall(TestSameWithThreads(PETSC_COMM_WORLD, "head", 1500, "sphere", "-method lm -max_it 3"));
 
   PetscCall(TestInvariance("head", "-method fixed-point -max_it 10 -energy_rtol 0"));
   PetscCall(TestInvariance("head", "-method lm -max_it 10 -energy_rtol 0"));
 
-  PetscCall(TestUsage("-balance .01"));
-  PetscCall(TestUsage("-start harmonic"));
-  PetscCall(TestOpen());
+  PetscCall(TestRefusals());
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }

@@ -71,6 +71,22 @@ static inline PetscErrorCode TestMeshCreate(MPI_Comm comm, const char *shape, Pe
   PetscFunctionReturn(0);
 }
 
+/* The cap, whose conformal map is the stereographic projection; `flat`: laid flat by that projection. */
+static inline PetscErrorCode TestCapCreate(PetscInt n, PetscBool flat, TestMesh *test)
+{
+  EqmSoup soup;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "cap", n, 0, &soup));
+  for (PetscInt v = 0; v < soup->vertex_end - soup->vertex_start && flat; v++) {
+    PetscReal *const p = soup->vertices + 3 * v;
+    for (PetscInt k = 0; k < 2; k++) p[k] /= 1. + p[2];
+    p[2] = 0.;
+  }
+  PetscCall(TestMeshFromSoup(soup, test));
+  PetscFunctionReturn(0);
+}
+
 /* A soup of a mesh written down in arrays. */
 static inline PetscErrorCode TestSoupFromArrays(MPI_Comm comm, PetscInt num_vertices, const PetscReal *points,
                                                 PetscInt cell_size, PetscInt num_cells, const PetscInt *corners,

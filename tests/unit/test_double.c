@@ -113,20 +113,13 @@ static PetscErrorCode TestRefusals(void)
    boundary's angles after a rotation. */
 static PetscErrorCode Compare(PetscInt n, PetscBool flat, EqmDistortion *distortion, PetscReal *difference)
 {
-  EqmSoup soup;
   TestMesh test;
   EqmSolver solver, other;
   EqmMap map;
   PetscBool in_order;
 
   PetscFunctionBegin;
-  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "cap", n, 0, &soup));
-  for (PetscInt v = 0; v < soup->vertex_end - soup->vertex_start && flat; v++) {
-    PetscReal *const p = soup->vertices + 3 * v;
-    for (PetscInt k = 0; k < 2; k++) p[k] /= 1. + p[2];
-    p[2] = 0.;
-  }
-  PetscCall(TestMeshFromSoup(soup, &test));
+  PetscCall(TestCapCreate(n, flat, &test));
   PetscCall(TestSolve(test.mesh, "conformal", "-method qiem -qiem_phase1 none -qiem_phase2 a -flow_step 4", &solver));
   PetscCall(EqmSolverGetMap(solver, test.soup, &map));
   *distortion = map->distortion;

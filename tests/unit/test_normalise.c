@@ -1,5 +1,5 @@
 /* Mobius maps as matrices, and the choices of one at the end of an angle-preserving map. */
-#include "support/testing.h"
+#include "support/runs.h"
 #include "domain/projective.h"
 #include "energy/kernel.h"
 #include <unistd.h>
@@ -216,21 +216,6 @@ static PetscErrorCode TestAlignFile(TestMesh *test)
   PetscFunctionReturn(0);
 }
 
-/* What cannot be is refused before any work. */
-static PetscErrorCode TestUsage(TestMesh *test, const char *text)
-{
-  PetscOptions options;
-  EqmSolver solver;
-
-  PetscFunctionBegin;
-  PetscCall(TestOptionsBegin(text, &options));
-  PetscCall(EqmSolverCreate(test->mesh, "conformal", &solver));
-  CHECK_FAILS(EQM_ERR_USAGE, EqmSolverSetFromOptions(solver));
-  PetscCall(TestOptionsEnd(&options));
-  PetscCall(EqmSolverDestroy(&solver));
-  PetscFunctionReturn(0);
-}
-
 int main(int argc, char **argv)
 {
   TestMesh test, open;
@@ -244,14 +229,14 @@ int main(int argc, char **argv)
   PetscCall(TestFix(&test));
   PetscCall(TestArea(&test));
   PetscCall(TestAlignFile(&test));
-  PetscCall(TestUsage(&test, "-fix 1,2"));
-  PetscCall(TestUsage(&test, "-fix 1,2,1"));
-  PetscCall(TestUsage(&test, "-fix 1,2,100000"));
-  PetscCall(TestUsage(&test, "-fix 1,2,3 -fix_points 1,0,0"));
-  PetscCall(TestUsage(&test, "-fix 1,2,3 -moebius area"));
+  PetscCall(TestRefused(test.mesh, "conformal", "-fix 1,2"));
+  PetscCall(TestRefused(test.mesh, "conformal", "-fix 1,2,1"));
+  PetscCall(TestRefused(test.mesh, "conformal", "-fix 1,2,100000"));
+  PetscCall(TestRefused(test.mesh, "conformal", "-fix 1,2,3 -fix_points 1,0,0"));
+  PetscCall(TestRefused(test.mesh, "conformal", "-fix 1,2,3 -moebius area"));
   PetscCall(TestMeshDestroy(&test));
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 100, 1, &open));
-  PetscCall(TestUsage(&open, "-moebius area"));
+  PetscCall(TestRefused(open.mesh, "conformal", "-moebius area"));
   PetscCall(TestMeshDestroy(&open));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);

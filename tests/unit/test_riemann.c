@@ -120,24 +120,16 @@ static PetscErrorCode TestLoopMetric(void)
   PetscFunctionReturn(0);
 }
 
-/* A cap, whose conformal map is the stereographic projection; `flat`: laid flat by that projection, so that the map is
-   its own image, exactly. */
+/* How far the map of a cap is from the stereographic projection, or that of a flat one from itself. */
 static PetscErrorCode CapError(PetscInt n, PetscBool flat, PetscReal *error, EqmDistortion *distortion)
 {
-  EqmSoup soup;
   TestMesh test;
   EqmSolver solver;
   EqmMap map;
   PetscReal *exact, radius = 0.;
 
   PetscFunctionBegin;
-  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "cap", n, 0, &soup));
-  for (PetscInt v = 0; v < soup->vertex_end - soup->vertex_start && flat; v++) {
-    PetscReal *const p = soup->vertices + 3 * v;
-    for (PetscInt k = 0; k < 2; k++) p[k] /= 1. + p[2];
-    p[2] = 0.;
-  }
-  PetscCall(TestMeshFromSoup(soup, &test));
+  PetscCall(TestCapCreate(n, flat, &test));
   PetscCall(TestSolve(test.mesh, "conformal", "-energy_rtol 0 -gradient_tol 1e-10", &solver));
   PetscCall(PetscMalloc1(2 * test.mesh->num_local, &exact));
   for (PetscInt v = 0; v < test.mesh->num_local; v++) {

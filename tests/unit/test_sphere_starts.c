@@ -1,8 +1,7 @@
 /* First maps to the sphere: without folds on shapes of increasing difficulty, the same on any number of ranks, and what
    they are by definition where that is known. */
-#include "support/testing.h"
+#include "support/runs.h"
 #include "energy/kernel.h"
-#include <string.h>
 
 static PetscErrorCode Start(TestMesh *test, const char *options, EqmSolver *solver)
 {
@@ -61,26 +60,13 @@ static PetscErrorCode TestNormals(PetscBool inside_out)
 }
 
 /* The mesh on all ranks together and on each alone. */
-static PetscErrorCode TestRanks(const char *options)
+static PetscErrorCode TestRanks(const char *start)
 {
-  TestMesh test[2];
-  EqmSolver solver;
-  EqmMap map[2];
+  char text[256];
 
   PetscFunctionBegin;
-  for (int k = 0; k < 2; k++) {
-    PetscCall(TestMeshCreate(k ? PETSC_COMM_WORLD : PETSC_COMM_SELF, "head", 500, 1, &test[k]));
-    PetscCall(Start(&test[k], options, &solver));
-    PetscCall(EqmSolverGetMap(solver, test[k].soup, &map[k]));
-    PetscCall(EqmSolverDestroy(&solver));
-  }
-  const PetscInt first = map[1]->soup->vertex_start;
-  for (PetscInt k = 0; k < 3 * (map[1]->soup->vertex_end - first); k++)
-    CHECK_CLOSE(map[1]->coordinates[k], map[0]->coordinates[3 * first + k], 1e-9, 1.);
-  for (int k = 0; k < 2; k++) {
-    PetscCall(EqmMapDestroy(&map[k]));
-    PetscCall(TestMeshDestroy(&test[k]));
-  }
+  PetscCall(PetscSNPrintf(text, sizeof(text), "-method rgd -max_it 0 %s", start));
+  PetscCall(TestSameOnRanks("head", 500, "sphere", text, 1e-9, 2.));
   PetscFunctionReturn(0);
 }
 

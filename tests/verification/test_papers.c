@@ -1,24 +1,6 @@
 /* The published rows of the Stanford Bunny and the house's own promise on it. Runs where EQUIMAP_DATA names a folder
    with disk_stanford_bunny.obj; elsewhere it is skipped. */
-#include "support/testing.h"
-#include <stdlib.h>
-
-enum { SKIPPED = 77 };
-
-static PetscErrorCode Run(EqmMesh mesh, const char *options, PetscReal *energy, PetscReal *sd)
-{
-  EqmSolver solver;
-
-  PetscFunctionBegin;
-  PetscCall(TestSolve(mesh, "disk", options, &solver));
-  *energy = solver->totals.energy;
-  *sd = solver->totals.sd;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: energy %.4e, SD %.4e, %d iterations, %d folds\n", options,
-                        (double)*energy, (double)*sd, (int)solver->iteration, (int)solver->totals.folds));
-  CHECK(solver->totals.folds == 0, "%d folds", (int)solver->totals.folds);
-  PetscCall(EqmSolverDestroy(&solver));
-  PetscFunctionReturn(0);
-}
+#include "support/published.h"
 
 /* Figures of 000 Table 1 where they can be reproduced, of docs/methods.md where they cannot. */
 static PetscErrorCode TestRows(EqmMesh mesh)
@@ -26,16 +8,16 @@ static PetscErrorCode TestRows(EqmMesh mesh)
   PetscReal energy, sd;
 
   PetscFunctionBegin;
-  PetscCall(Run(mesh, "-method fixed-point -start harmonic -max_it 100 -energy_rtol 0", &energy, &sd));
+  PetscCall(TestRow(mesh, "disk", "-method fixed-point -start harmonic -max_it 100 -energy_rtol 0", &energy, &sd));
   CHECK_CLOSE(energy, 4.775e-3, .01, 4.775e-3);
   CHECK_CLOSE(sd, 3.92e-2, .01, 3.92e-2);
-  PetscCall(Run(mesh, "-method ncg -max_it 100 -energy_rtol 0", &energy, &sd));
+  PetscCall(TestRow(mesh, "disk", "-method ncg -max_it 100 -energy_rtol 0", &energy, &sd));
   CHECK_CLOSE(energy, 1.478e-3, .02, 1.478e-3);
   CHECK_CLOSE(sd, 2.20e-2, .02, 2.20e-2);
-  PetscCall(Run(mesh, "-method ncg -ncg_refresh 50 -max_it 100 -energy_rtol 0", &energy, &sd));
+  PetscCall(TestRow(mesh, "disk", "-method ncg -ncg_refresh 50 -max_it 100 -energy_rtol 0", &energy, &sd));
   CHECK_CLOSE(energy, 7.93e-4, .03, 7.93e-4);
   CHECK_CLOSE(sd, 1.62e-2, .03, 1.62e-2);
-  PetscCall(Run(mesh, "-max_factorizations 12 -energy_rtol 0", &energy, &sd));
+  PetscCall(TestRow(mesh, "disk", "-max_factorizations 12 -energy_rtol 0", &energy, &sd));
   CHECK(energy <= 5e-5, "%g after 12 coupled factorisations", (double)energy);
   PetscFunctionReturn(0);
 }
@@ -60,17 +42,13 @@ static PetscErrorCode TestUniqueness(EqmMesh mesh)
 /* Without data nothing is tested, and said so by the exit code. */
 static PetscErrorCode Test(PetscBool *skipped)
 {
-  const char *const folder = getenv("EQUIMAP_DATA");
-  char file[PETSC_MAX_PATH_LEN];
   EqmSoup soup;
   TestMesh test;
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(file, sizeof(file), "%s/disk_stanford_bunny.obj", folder ? folder : ""));
-  PetscCall(PetscTestFile(file, 'r', skipped));
-  *skipped = (PetscBool)(!folder || !*skipped);
+  PetscCall(TestReadPublished("disk_stanford_bunny.obj", &soup));
+  *skipped = (PetscBool)!soup;
   if (*skipped) PetscFunctionReturn(0);
-  PetscCall(EqmSoupRead(PETSC_COMM_WORLD, file, &soup));
   PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(TestRows(test.mesh));
   PetscCall(TestUniqueness(test.mesh));
