@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <libgen.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,7 @@
 
 static PetscErrorCode RejectWrite(const char *path, int error_number, char *error, size_t length)
 {
-  snprintf(error, length, "cannot write %s: %s", path, strerror(error_number ? error_number : EIO));
+  snprintf(error, length, "cannot write %.1900s: %s", path, strerror(error_number ? error_number : EIO));
   return EQM_ERR_IO;
 }
 
@@ -193,32 +194,72 @@ static int KeepPrevious(const EqmAtomicFile *file)
   return rename(file->path, file->previous) ? errno : 0; /* a file system without hard links */
 }
 
-/* EqmAtomicCommit - flush the temporary file to the disk, give it its name, flush the directory.
+/* Flush, rename, flush the directory; 0 or the error number. System calls only: this may be another thread. */
+static int FlushAndRename(EqmAtomicFile *file)
+{
+  const PetscBool in_place = strcmp(file->path, file->temporary) ? PETSC_FALSE : PETSC_TRUE;
+  int error_number = file->stream ? CloseStream(file) : file->error_number;
+
+  if (error_number || in_place) return error_number;
+  error_number = SyncPath(file->temporary, O_RDONLY);
+  if (!error_number) error_number = KeepPrevious(file);
+  if (!error_number && rename(file->temporary, file->path)) error_number = errno;
+  if (!error_number) error_number = SyncDirectoryOf(file->path);
+  return error_number;
+}
+
+static void *CommitInBackground(void *context)
+{
+  EqmAtomicFile *const file = (EqmAtomicFile *)context;
+
+  file->error_number = FlushAndRename(file);
+  return NULL;
+}
+
+static void Join(EqmAtomicFile *file)
+{
+  if (file->has_thread) (void)pthread_join(file->thread, NULL);
+  file->has_thread = PETSC_FALSE;
+}
+
+/* EqmAtomicCommitBegin - begin to flush and rename, and return at once; the disk is slow and needs no help.
+
+   Not collective. EqmAtomicCommit, which waits for the end and says how it went, or EqmAtomicAbort must follow; `file`
+   must stay where it is until then. A process that dies meanwhile leaves the file that was there before, or the new
+   one. Where no thread can be had nothing happens here, and EqmAtomicCommit does it all. */
+void EqmAtomicCommitBegin(EqmAtomicFile *file)
+{
+  sigset_t all, before;
+
+  (void)sigfillset(&all); /* signals are for the thread that computes */
+  if (pthread_sigmask(SIG_SETMASK, &all, &before)) return;
+  file->has_thread = pthread_create(&file->thread, NULL, CommitInBackground, file) ? PETSC_FALSE : PETSC_TRUE;
+  (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+/* EqmAtomicCommit - flush the temporary file to the disk, give it its name, flush the directory; or wait until what
+   EqmAtomicCommitBegin has begun is done.
 
    Not collective. After a failure the temporary file is gone and a file that had the name before is untouched.
    Errors: EQM_ERR_IO (returned quietly, reason in `error`): the first write that failed, a full disk, a failed rename.
  */
 PetscErrorCode EqmAtomicCommit(EqmAtomicFile *file, char *error, size_t length)
 {
-  PetscBool in_place = strcmp(file->path, file->temporary) ? PETSC_FALSE : PETSC_TRUE;
-  int error_number = file->stream ? CloseStream(file) : file->error_number;
+  const PetscBool begun = file->has_thread;
+  int error_number;
 
-  if (!error_number && !in_place) error_number = SyncPath(file->temporary, O_RDONLY);
-  if (!error_number && !in_place) error_number = KeepPrevious(file);
-  if (!error_number && !in_place && rename(file->temporary, file->path)) error_number = errno;
-  if (error_number) {
-    EqmAtomicAbort(file);
-    return RejectWrite(file->path, error_number, error, length);
-  }
-  if (!in_place) error_number = SyncDirectoryOf(file->path);
-  if (error_number) return RejectWrite(file->path, error_number, error, length);
-  return 0;
+  Join(file);
+  error_number = begun ? file->error_number : FlushAndRename(file);
+  if (!error_number) return 0;
+  EqmAtomicAbort(file);
+  return RejectWrite(file->path, error_number, error, length);
 }
 
 /* EqmAtomicAbort - forget the file: the temporary file is removed, one that had the name before is untouched.
    Not collective; harmless when repeated. */
 void EqmAtomicAbort(EqmAtomicFile *file)
 {
+  Join(file);
   if (file->stream) fclose(file->stream);
   file->stream = NULL;
   if (file->temporary[0] && strcmp(file->path, file->temporary)) unlink(file->temporary);

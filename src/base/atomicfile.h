@@ -11,10 +11,12 @@
        }
        PetscCall(EqmAgree(comm, code, error));
 
-   A library that opens files itself (HDF5) takes EqmAtomicBegin instead of EqmAtomicOpen and writes `temporary`. */
+   A library that opens files itself (HDF5) takes EqmAtomicBegin instead of EqmAtomicOpen and writes `temporary`.
+   EqmAtomicCommitBegin lets the disk work while the caller does something else; EqmAtomicCommit then waits for it. */
 #ifndef EQM_ATOMICFILE_H
 #define EQM_ATOMICFILE_H
 
+#include <pthread.h>
 #include <stdio.h>
 #include <equimap/base.h>
 
@@ -24,6 +26,8 @@ typedef struct {
   char path[PETSC_MAX_PATH_LEN];      /* what the file will be called; links are followed */
   char temporary[PETSC_MAX_PATH_LEN]; /* what it is called until EqmAtomicCommit; = path for devices and pipes */
   char previous[PETSC_MAX_PATH_LEN];  /* what a file that had the name before is called from then on; empty: lost */
+  pthread_t thread;                   /* flushes and renames in the background, after EqmAtomicCommitBegin */
+  PetscBool has_thread;
 } EqmAtomicFile;
 
 PETSC_INTERN PetscErrorCode EqmAtomicBegin(const char *path, EqmAtomicFile *file, char *error, size_t length);
@@ -31,6 +35,7 @@ PETSC_INTERN PetscErrorCode EqmAtomicOpen(const char *path, EqmAtomicFile *file,
 PETSC_INTERN void EqmAtomicWrite(EqmAtomicFile *file, const void *bytes, size_t count);
 PETSC_INTERN void EqmAtomicPrint(EqmAtomicFile *file, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 PETSC_INTERN void EqmAtomicPrintReals(EqmAtomicFile *file, PetscInt count, const PetscReal *values, char separator);
+PETSC_INTERN void EqmAtomicCommitBegin(EqmAtomicFile *file);
 PETSC_INTERN PetscErrorCode EqmAtomicCommit(EqmAtomicFile *file, char *error, size_t length);
 PETSC_INTERN void EqmAtomicAbort(EqmAtomicFile *file);
 PETSC_INTERN void EqmAtomicSweep(const char *path);

@@ -217,31 +217,69 @@ PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage)
   PetscFunctionReturn(0);
 }
 
-/* Write one now; a failure is told the first time. */
-static PetscErrorCode Write(EqmSolver solver)
+/* How writing went; a failure is told the first time. */
+static PetscErrorCode Note(EqmSolver solver, PetscErrorCode error, const char *message)
+{
+  EqmCheckpoints *const known = &solver->checkpoints;
+
+  PetscFunctionBegin;
+  if (error && !known->failing)
+    PetscCall(EqmWarn(solver->comm, message, "; the run goes on, and what was written before is still there"));
+  known->failing = (PetscBool)(error != 0);
+  if (error) known->written = -1;
+  PetscFunctionReturn(0);
+}
+
+/* Wait for the disk. */
+static PetscErrorCode Finish(EqmSolver solver)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  if (!solver->checkpoints.writing) PetscFunctionReturn(0);
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
+  error = EqmStateFinish(&solver->checkpoints.writing);
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(Note(solver, error, message));
+  PetscFunctionReturn(0);
+}
+
+/* Write one while the disk may still be busy with it when the next iteration begins. */
+static PetscErrorCode Save(EqmSolver solver)
+{
+  EqmCheckpoints *const known = &solver->checkpoints;
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(Finish(solver));
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
+  error = EqmStateSave(solver->mesh, solver->settings.checkpoint, Visit, solver, &known->writing);
+  PetscCall(PetscPopErrorHandler());
+  known->written = solver->iteration;
+  if (error) PetscCall(Note(solver, error, message));
+  PetscFunctionReturn(0);
+}
+
+/* Write one now, or wait for the last one, or both, by the clock of checkpoints. */
+static PetscErrorCode Write(EqmSolver solver, PetscBool save, PetscBool finish)
 {
   EqmCheckpoints *const known = &solver->checkpoints;
   const EqmLedger ledger = solver->mesh->ledger;
-  char message[EQM_MESSAGE_MAX] = "";
   PetscReal before, after;
-  PetscErrorCode error;
 
   PetscFunctionBegin;
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_MINIMISE));
   PetscCall(EqmLedgerGetSeconds(ledger, NULL, NULL, &before));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_CHECKPOINT));
-  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
-  error = EqmStateSave(solver->mesh, solver->settings.checkpoint, Visit, solver);
-  PetscCall(PetscPopErrorHandler());
+  if (save) PetscCall(Save(solver));
+  if (finish) PetscCall(Finish(solver));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_CHECKPOINT));
   PetscCall(EqmLedgerGetSeconds(ledger, NULL, NULL, &after));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_MINIMISE));
   known->cost = after - before;
   known->last = after;
-  if (!error) known->written = solver->iteration;
-  if (error && !known->failing)
-    PetscCall(EqmWarn(solver->comm, message, "; the run goes on, and what was written before is still there"));
-  known->failing = (PetscBool)(error != 0);
   PetscFunctionReturn(0);
 }
 
@@ -260,7 +298,7 @@ static PetscBool IsDue(EqmSolver solver)
 PetscErrorCode EqmCheckpointIfDue(EqmSolver solver)
 {
   PetscFunctionBegin;
-  if (IsDue(solver)) PetscCall(Write(solver));
+  if (IsDue(solver)) PetscCall(Write(solver, PETSC_TRUE, PETSC_FALSE));
   PetscFunctionReturn(0);
 }
 
@@ -270,7 +308,7 @@ PetscErrorCode EqmCheckpointEnd(EqmSolver solver)
 
   PetscFunctionBegin;
   if (!solver->settings.checkpoint[0]) PetscFunctionReturn(0);
-  if (solver->iteration != known->written || known->finished) PetscCall(Write(solver));
+  PetscCall(Write(solver, (PetscBool)(solver->iteration != known->written || known->finished), PETSC_TRUE));
   if (solver->status != EQM_STATUS_STOPPED || !known->failing) PetscFunctionReturn(0);
   solver->status = EQM_STATUS_NOT_CONVERGED;
   PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),

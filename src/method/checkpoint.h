@@ -9,6 +9,7 @@
 /* What a solver knows of its checkpoints. */
 typedef struct {
   EqmState open;                      /* the one that is being loaded, between map and method; else NULL */
+  EqmState writing;                   /* the last one, while the disk may still be at work; else NULL */
   EqmStopFile stop_file;              /* beside the checkpoint */
   char kept_mesh[PETSC_MAX_PATH_LEN]; /* the run's copy of its mesh, likewise; empty: there is none */
   PetscReal cost, last;               /* seconds that the last checkpoint took, and when it was written */

@@ -32,6 +32,8 @@ PETSC_INTERN PetscErrorCode EqmH5Create(MPI_Comm comm, const char *name, EqmH5 *
 PETSC_INTERN PetscErrorCode EqmH5Open(MPI_Comm comm, const char *name, EqmH5 *h5);
 PETSC_INTERN PetscErrorCode EqmH5KeepPrevious(EqmH5 h5, const char *previous);
 PETSC_INTERN PetscErrorCode EqmH5Commit(EqmH5 *h5);
+PETSC_INTERN PetscErrorCode EqmH5CommitBegin(EqmH5 h5);
+PETSC_INTERN PetscErrorCode EqmH5CommitEnd(EqmH5 *h5);
 PETSC_INTERN PetscErrorCode EqmH5Close(EqmH5 *h5);
 
 PETSC_INTERN PetscErrorCode EqmH5DeclareReals(EqmH5 h5, const char *path, PetscInt total, PetscInt width);

@@ -266,13 +266,10 @@ PetscErrorCode EqmH5Reserve(EqmH5 h5)
   PetscFunctionReturn(0);
 }
 
-/* Mark a new file complete, close it, force it to the disk and give it its name. Errors: EQM_ERR_IO; the file that was
-   there before then stays. Collective. */
-PetscErrorCode EqmH5Commit(EqmH5 *handle)
+/* Mark a new file complete, close it, and begin to force it to the disk and to give it its name, which goes on while
+   the caller does other things; EqmH5CommitEnd must follow, or EqmH5Close. Errors: EQM_ERR_IO. Collective. */
+PetscErrorCode EqmH5CommitBegin(EqmH5 h5)
 {
-  char message[EQM_MESSAGE_MAX] = "";
-  EqmH5 h5 = *handle;
-  PetscErrorCode error = 0;
   PetscBool fine;
 
   PetscFunctionBegin;
@@ -280,9 +277,31 @@ PetscErrorCode EqmH5Commit(EqmH5 *handle)
   fine = (PetscBool)(H5Fclose(h5->file) >= 0);
   h5->file = H5I_INVALID_HID;
   PetscCall(EqmH5Agree(h5, fine, "it cannot be closed"));
+  if (h5->rank == 0) EqmAtomicCommitBegin(&h5->atomic);
+  PetscFunctionReturn(0);
+}
+
+/* Wait until the file is on the disk under its name. Errors: EQM_ERR_IO; the file that was there before then stays, and
+   EqmH5Close must follow. Collective. */
+PetscErrorCode EqmH5CommitEnd(EqmH5 *handle)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  EqmH5 h5 = *handle;
+  PetscErrorCode error = 0;
+
+  PetscFunctionBegin;
   if (h5->rank == 0) error = EqmAtomicCommit(&h5->atomic, message, sizeof(message));
   PetscCall(EqmAgree(h5->comm, error, message));
   h5->writing = PETSC_FALSE;
   (void)End(handle);
+  PetscFunctionReturn(0);
+}
+
+/* Both at once. Collective. */
+PetscErrorCode EqmH5Commit(EqmH5 *handle)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmH5CommitBegin(*handle));
+  PetscCall(EqmH5CommitEnd(handle));
   PetscFunctionReturn(0);
 }

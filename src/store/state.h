@@ -51,8 +51,14 @@ PETSC_INTERN EqmMesh EqmStateMesh(EqmState state);
 PETSC_INTERN PetscErrorCode EqmStateUseMesh(EqmState state, EqmMesh mesh);
 
 typedef PetscErrorCode (*EqmStateVisit)(EqmState state, void *context);
-/* Write what `visit` names. Errors: EQM_ERR_IO, and the file that was there stays. */
-PETSC_INTERN PetscErrorCode EqmStateSave(EqmMesh mesh, const char *file, EqmStateVisit visit, void *context);
+/* Write what `visit` names. The disk may still be at work when this returns: `writing` is to be given to
+   EqmStateFinish, before the next state is saved under the same name. Errors: EQM_ERR_IO, and the file that was there
+   stays. */
+PETSC_INTERN PetscErrorCode EqmStateSave(EqmMesh mesh, const char *file, EqmStateVisit visit, void *context,
+                                         EqmState *writing);
+/* Wait until the file is there for good; nothing to wait for if it is NULL. Errors: EQM_ERR_IO, and the file that was
+   there stays. */
+PETSC_INTERN PetscErrorCode EqmStateFinish(EqmState *writing);
 /* Open a file for loading; everything in it is checked. Errors: EQM_ERR_IO (missing, not HDF5), EQM_ERR_CHECKPOINT (not
    a state, incomplete, damaged). */
 PETSC_INTERN PetscErrorCode EqmStateOpen(EqmMesh mesh, const char *file, EqmState *state);

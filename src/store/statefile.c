@@ -166,7 +166,7 @@ static PetscErrorCode Fill(EqmState state, EqmStateVisit visit, void *context)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmStateSave(EqmMesh mesh, const char *file, EqmStateVisit visit, void *context)
+PetscErrorCode EqmStateSave(EqmMesh mesh, const char *file, EqmStateVisit visit, void *context, EqmState *writing)
 {
   char previous[PETSC_MAX_PATH_LEN];
   EqmState state;
@@ -178,8 +178,21 @@ PetscErrorCode EqmStateSave(EqmMesh mesh, const char *file, EqmStateVisit visit,
   error = EqmH5Create(mesh->comm, file, &state->h5);
   if (!error) error = Fill(state, visit, context);
   if (!error) error = EqmH5KeepPrevious(state->h5, previous);
-  if (!error) error = EqmH5Commit(&state->h5);
-  PetscCall(EqmStateClose(&state));
+  if (!error) error = EqmH5CommitBegin(state->h5);
+  if (error) PetscCall(EqmStateClose(&state));
+  *writing = state;
+  PetscCall(error);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmStateFinish(EqmState *writing)
+{
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  if (!*writing) PetscFunctionReturn(0);
+  error = EqmH5CommitEnd(&(*writing)->h5);
+  PetscCall(EqmStateClose(writing));
   PetscCall(error);
   PetscFunctionReturn(0);
 }

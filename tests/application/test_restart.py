@@ -1,5 +1,6 @@
-"""Runs that are interrupted and go on: test_restart.py PROGRAM [RANKS [KILLS | pairs]]. With KILLS: only so many runs that are
-killed at random moments, on 1, 2 and 3 ranks in turn; with pairs: only runs that begin on 1, 2 or 3 ranks and end on 1, 2 or 3.
+"""Runs that are interrupted and go on: test_restart.py PROGRAM [RANKS [KILLS | pairs | overhead]]. With KILLS: only so many runs
+that are killed at random moments, on 1, 2 and 3 ranks in turn; pairs: only runs that begin on 1, 2 or 3 ranks and end on 1, 2 or 3;
+overhead: only what checkpoints cost.
 Where one rank writes what another reads the figures agree to the solver's tolerance; on the same number of ranks to the last
 bit."""
 import csv
@@ -63,13 +64,10 @@ def remove(program, *names):
                 os.remove(program.file(candidate))
 
 
-def kill(program, process, delay):
-    """SIGKILL to all ranks at once after a while; False if the run had ended by then."""
-    try:
-        process.wait(delay)
+def kill(program, process):
+    """SIGKILL to all ranks at once; False if the run had ended by then."""
+    if process.poll() is not None:
         return False
-    except subprocess.TimeoutExpired:
-        pass
     for number in [*program.processes(process), process.pid]:
         try:
             os.kill(number, signal.SIGKILL)
@@ -79,32 +77,67 @@ def kill(program, process, delay):
     return True
 
 
+def await_writing(program, process):
+    """Until the next checkpoint grows under its temporary name, or the run has ended."""
+    while process.poll() is None and not leftovers(program, "run.ck"):
+        time.sleep(0.0005)
+
+
+def leftovers(program, name=""):
+    return [entry for entry in os.listdir(program.folder) if entry.startswith(name) and entry.endswith(".tmp")]
+
+
 def check_kills(program, ranks, times, rng):
-    """Killed again and again, also while writing, restarted until it ends: as if nothing had happened."""
-    options = ("-method", "rgd", "-max_it", 40, *ENDLESS) if ranks > 1 else ("-method", "lbfgs", "-max_it", 40, *ENDLESS)
-    run = lambda *more: ("disk", "hills.obj", *options, *more)  # noqa: E731
+    """Killed again and again, at any time and while writing, restarted until it ends: as if nothing had happened."""
+    method = ("lbfgs", "lm", "rgd")[ranks - 1]
+    run = lambda *more: ("disk", "hills.obj", "-method", method, "-max_it", 30, *ENDLESS, *more)  # noqa: E731
     program.succeed(*run("-max_it", 0, "-checkpoint", "start.ck", *outputs("start")), codes=(4,), ranks=ranks)
     begun = time.time()
     program.succeed(*run("-restart", "start.ck", "-checkpoint", "whole.ck", "-checkpoint_every", 1, *outputs("whole")), codes=(4,),
                     ranks=ranks)
     length = time.time() - begun
-    killed = 0
-    while killed < times:
+    killed = writing = finished = 0
+    while killed < times or finished == 0:
         remove(program, "run.ck")
-        for _ in range(200):
+        code = None
+        while code is None:
             there = [name for name in ("run.ck", "run.ck.previous") if os.path.exists(program.file(name))]
             process = program.start(*run("-restart", "run.ck" if there else "start.ck", "-checkpoint", "run.ck", "-checkpoint_every",
                                          1, *outputs("run")), ranks=ranks)
-            if killed < times and kill(program, process, rng.uniform(0.1, 1.2) * length):
+            if killed < times and rng.random() < .5:
+                time.sleep(rng.uniform(0.1, 1.) * length)
+            elif killed < times:
+                time.sleep(rng.uniform(0.1, 0.7) * length)
+                await_writing(program, process)
+            if killed < times and kill(program, process):
                 killed += 1
+                writing += len(leftovers(program, "run.ck")) > 0
                 check_readable(program, "run.ck")
                 continue
             text = process.communicate(timeout=120)[0]
-            assert process.returncode == 4, text
-            break
+            code = process.returncode
+            assert code == 4, text
         check_same(program, "run", "whole")
-    leftovers = [name for name in os.listdir(program.folder) if name.endswith(".tmp")]
-    assert not leftovers, f"left behind: {leftovers}"
+        finished += 1
+    assert not leftovers(program), f"left behind: {leftovers(program)}"
+    print(f"{ranks} ranks, {method}: killed {killed} times, {writing} of them while writing; {finished} finished", flush=True)
+    return writing
+
+
+def check_many_kills(program, times):
+    """On 1, 2 and 3 ranks in turn; some of them must have died while writing."""
+    assert sum(check_kills(program, ranks, (times + 3 - ranks) // 3, random.Random(ranks)) for ranks in (1, 2, 3)) > 0
+
+
+def check_overhead(program):
+    """Seconds in checkpoints over those of the default method itself, with a mesh of the size of a scan."""
+    program.succeed("generate", "hills", "-n", 30000, "-o", "scan.h5")
+    for every, most in ((1, .2), (10, .03)):
+        program.succeed("disk", "scan.h5", "-max_it", 20, *ENDLESS, "-checkpoint", "run.ck.h5", "-checkpoint_every", every,
+                        *outputs("run"), codes=(4,), timeout=1200)
+        seconds = json.loads(program.read("run.json"))["seconds"]
+        print(f"every {every} iterations: {seconds['checkpoint']:.2f} s of {seconds['minimise']:.1f} s")
+        assert seconds["checkpoint"] <= most * seconds["minimise"], f"{every}: {seconds}"
 
 
 def methods_of(program, command):
@@ -368,12 +401,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
         make_meshes(program)
-        if sys.argv[3:] == ["pairs"]:
-            check_all_pairs(program)
-            return 0
-        if len(sys.argv) > 3:
-            for ranks in (1, 2, 3):
-                check_kills(program, ranks, (int(sys.argv[3]) + 3 - ranks) // 3, random.Random(ranks))
+        if sys.argv[3:]:
+            alone = {"pairs": check_all_pairs, "overhead": check_overhead}
+            alone.get(sys.argv[3], lambda program: check_many_kills(program, int(sys.argv[3])))(program)
             return 0
         check_kills(program, program.ranks, 4, random.Random(program.ranks))
         for check in (check_methods, check_other_ranks, check_damage, check_foreign, check_kept_mesh, check_finished, check_stopping, check_register,
