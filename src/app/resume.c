@@ -1,19 +1,7 @@
 /* The mesh of a run that goes on: the one that is named, or the copy that lies beside the checkpoint. */
 #include "app.h"
+#include "base/lookup.h"
 #include "store/keptmesh.h"
-#include <unistd.h>
-
-/* Is there a file of that name? Rank 0 looks; no name is no file. Collective on PETSC_COMM_WORLD. */
-static PetscErrorCode IsThere(const char *file, PetscBool *there)
-{
-  PetscMPIInt rank;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  *there = (PetscBool)(rank == 0 && file && !access(file, F_OK));
-  PetscCallMPI(MPI_Bcast(there, 1, MPIU_BOOL, 0, PETSC_COMM_WORLD));
-  PetscFunctionReturn(0);
-}
 
 /* EqmInputChoose - say in `input` which mesh to read: the one that is named, or, on a restart for which it is gone or
    not named, the copy beside the checkpoint; likewise the density.
@@ -27,8 +15,8 @@ PetscErrorCode EqmInputChoose(const char *named, const char *restart, EqmInputOp
   PetscFunctionBegin;
   input->resumed = (PetscBool)(restart != NULL);
   PetscCall(PetscStrncpy(input->mesh, named ? named : "", sizeof(input->mesh)));
-  PetscCall(IsThere(named, &mesh_there));
-  PetscCall(IsThere(input->density, &density_there));
+  PetscCall(EqmFileIsThere(PETSC_COMM_WORLD, named, &mesh_there));
+  PetscCall(EqmFileIsThere(PETSC_COMM_WORLD, input->density, &density_there));
   if (!restart || (mesh_there && (density_there || !input->density))) PetscFunctionReturn(0);
   PetscCall(EqmKeptMeshFind(PETSC_COMM_WORLD, restart, input->copy, sizeof(input->copy), &has_density));
   if (!density_there && has_density) input->density = input->copy;

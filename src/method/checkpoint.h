@@ -20,6 +20,12 @@ typedef struct {
   PetscBool failing;                  /* the last one could not be written */
 } EqmCheckpoints;
 
+/* What a checkpoint holds: all of it; what can be known before the method is set up; the rest, which also sets right
+   what set_up has done to the map. Collective. */
+PETSC_INTERN PetscErrorCode EqmCheckpointVisit(EqmState state, void *solver);
+PETSC_INTERN PetscErrorCode EqmCheckpointVisitMap(EqmState state, EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmCheckpointVisitMethod(EqmState state, EqmSolver solver);
+
 /* The run is the `stage`-th minimisation of several, counted from 1, each with a checkpoint of its own: the names of
    -checkpoint and -restart get .STAGE behind. A later stage whose checkpoint is not there begins anew. Call after
    EqmSolverSetFromOptions. Collective. */

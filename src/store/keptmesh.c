@@ -1,4 +1,5 @@
 #include "store/keptmesh.h"
+#include "base/lookup.h"
 #include "base/quiet.h"
 #include "format/format.h"
 #include "mesh/build.h"
@@ -6,7 +7,6 @@
 #include "store/state.h"
 #include <libgen.h>
 #include <string.h>
-#include <unistd.h>
 
 static const char suffix[] = ".h5", density_path[] = "/cell/density";
 
@@ -17,17 +17,6 @@ PetscErrorCode EqmKeptMeshName(const char *checkpoint, char *name, size_t length
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(name, length, "%.*s.mesh%s", (int)(has ? whole - end : whole), checkpoint, suffix));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode IsThere(MPI_Comm comm, const char *file, PetscBool *there)
-{
-  PetscMPIInt rank;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  *there = (PetscBool)(rank == 0 && !access(file, R_OK));
-  PetscCallMPI(MPI_Bcast(there, 1, MPIU_BOOL, 0, comm));
   PetscFunctionReturn(0);
 }
 
@@ -54,7 +43,7 @@ static PetscErrorCode Look(EqmSoup soup, const char *file, PetscBool *sound, Pet
 
   PetscFunctionBegin;
   *same = PETSC_FALSE;
-  PetscCall(IsThere(soup->comm, file, sound));
+  PetscCall(EqmFileIsThere(soup->comm, file, sound));
   if (!*sound) PetscFunctionReturn(0);
   PetscCall(EqmSoupComputeIdentity(soup, &wanted));
   PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
@@ -100,7 +89,7 @@ static PetscErrorCode Ask(MPI_Comm comm, const char *checkpoint, char *name, siz
 
   PetscFunctionBegin;
   name[0] = '\0';
-  PetscCall(IsThere(comm, checkpoint, &there));
+  PetscCall(EqmFileIsThere(comm, checkpoint, &there));
   if (!there) PetscFunctionReturn(0);
   PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
   error = EqmH5Open(comm, checkpoint, &h5);
@@ -118,8 +107,8 @@ PetscErrorCode EqmKeptMeshFind(MPI_Comm comm, const char *checkpoint, char *name
 
   PetscFunctionBegin;
   PetscCall(EqmStatePreviousName(checkpoint, previous, sizeof(previous)));
-  PetscCall(IsThere(comm, checkpoint, &there));
-  PetscCall(IsThere(comm, previous, &before));
+  PetscCall(EqmFileIsThere(comm, checkpoint, &there));
+  PetscCall(EqmFileIsThere(comm, previous, &before));
   if (!there && !before) EqmFail(comm, EQM_ERR_IO, "-restart %s: there is no such file", checkpoint);
   PetscCall(Ask(comm, checkpoint, copy, sizeof(copy)));
   if (!copy[0]) PetscCall(Ask(comm, previous, copy, sizeof(copy)));
@@ -129,7 +118,7 @@ PetscErrorCode EqmKeptMeshFind(MPI_Comm comm, const char *checkpoint, char *name
   }
   PetscCall(PetscStrncpy(folder, checkpoint, sizeof(folder)));
   PetscCall(PetscSNPrintf(name, length, "%s/%s", dirname(folder), basename(copy)));
-  PetscCall(IsThere(comm, name, &there));
+  PetscCall(EqmFileIsThere(comm, name, &there));
   if (!there) {
     EqmFail(comm, EQM_ERR_CHECKPOINT, "-restart %s: its mesh, '%s', is gone; name the mesh as before", checkpoint,
             name);
