@@ -90,6 +90,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   PetscCall(EqmSweepOutput(options->output));
   if (options->has_summary) PetscCall(EqmSweepOutput(options->summary));
   if (options->has_history) PetscCall(EqmSweepOutput(options->history));
+  if (options->has_histogram) PetscCall(EqmSweepOutput(options->histogram));
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
    cost, known only then. */
 #include "app.h"
 #include "base/atomicfile.h"
+#include "store/store.h"
 #include <omp.h>
 #include <sys/stat.h>
 
@@ -49,6 +50,21 @@ PetscErrorCode EqmCheckOutput(const char *mesh, const char *files)
   PetscFunctionReturn(0);
 }
 
+/* Of a file, and of those that come beside a result. */
+static PetscErrorCode Sweep(const char *file)
+{
+  static const char *const suffixes[] = {".xmf", ".morph.xmf"};
+  char name[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  EqmAtomicSweep(file);
+  for (size_t k = 0; k < sizeof(suffixes) / sizeof(suffixes[0]) && EqmHasSuffix(file, ".h5"); k++) {
+    PetscCall(EqmNameBeside(file, suffixes[k], name, sizeof(name)));
+    EqmAtomicSweep(name);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* EqmSweepOutput - remove what a killed run has left behind of the comma-separated `files`. For runs with checkpoints,
    which are killed and begun again, one at a time.
 
@@ -62,7 +78,7 @@ PetscErrorCode EqmSweepOutput(const char *files)
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   PetscCall(PetscStrToArray(files, ',', &count, &names));
-  for (int k = 0; k < count && rank == 0; k++) EqmAtomicSweep(names[k]);
+  for (int k = 0; k < count && rank == 0; k++) PetscCall(Sweep(names[k]));
   PetscCall(PetscStrToArrayDestroy(count, names));
   PetscFunctionReturn(0);
 }

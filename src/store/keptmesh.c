@@ -5,18 +5,15 @@
 #include "mesh/build.h"
 #include "store/h5.h"
 #include "store/state.h"
+#include "store/store.h"
 #include <libgen.h>
-#include <string.h>
 
-static const char suffix[] = ".h5", density_path[] = "/cell/density";
+static const char density_path[] = "/cell/density";
 
 PetscErrorCode EqmKeptMeshName(const char *checkpoint, char *name, size_t length)
 {
-  const size_t whole = strlen(checkpoint), end = strlen(suffix);
-  const PetscBool has = (PetscBool)(whole > end && !strcmp(checkpoint + whole - end, suffix));
-
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(name, length, "%.*s.mesh%s", (int)(has ? whole - end : whole), checkpoint, suffix));
+  PetscCall(EqmNameBeside(checkpoint, ".mesh.h5", name, length));
   PetscFunctionReturn(0);
 }
 

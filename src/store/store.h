@@ -5,6 +5,8 @@
 #include <equimap/map.h>
 
 PETSC_INTERN PetscBool EqmHasSuffix(const char *name, const char *suffix);
+/* NAME.h5 -> NAME`suffix`; what does not end in .h5 gets the suffix behind. */
+PETSC_INTERN PetscErrorCode EqmNameBeside(const char *file, const char *suffix, char *name, size_t length);
 PETSC_INTERN PetscErrorCode EqmMapWriteResult(EqmMap map, const char *file);
 PETSC_INTERN PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file);
 /* Where frame number %d of a morph stands in the result file. */

@@ -12,6 +12,15 @@ PetscBool EqmHasSuffix(const char *name, const char *suffix)
   return (PetscBool)(length > tail && !strcasecmp(name + length - tail, suffix));
 }
 
+PetscErrorCode EqmNameBeside(const char *file, const char *suffix, char *name, size_t length)
+{
+  const size_t whole = strlen(file), end = EqmHasSuffix(file, ".h5") ? strlen(".h5") : 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, length, "%.*s%s", (int)(whole - end), file, suffix));
+  PetscFunctionReturn(0);
+}
+
 /* Do something for every name of a comma-separated list. */
 typedef PetscErrorCode (*Action)(MPI_Comm comm, const char *file, void *context);
 

@@ -154,7 +154,6 @@ static void Print(EqmAtomicFile *file, void *context)
   if (buffer) xmlBufferFree(buffer);
 }
 
-/* NAME.h5 -> NAME`suffix`. */
 static PetscErrorCode Write(EqmMap map, const char *result_file, const char *suffix, Body body, PetscInt num_frames)
 {
   const char *const slash = strrchr(result_file, '/');
@@ -162,7 +161,7 @@ static PetscErrorCode Write(EqmMap map, const char *result_file, const char *suf
   char name[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;
-  (void)snprintf(name, sizeof(name), "%.*s%s", (int)(strlen(result_file) - strlen(".h5")), result_file, suffix);
+  PetscCall(EqmNameBeside(result_file, suffix, name, sizeof(name)));
   PetscCall(EqmAtomicPrintFile(map->soup->comm, name, Print, &contents));
   PetscFunctionReturn(0);
 }
