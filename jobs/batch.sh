@@ -42,6 +42,15 @@ option_value() {
   done
 }
 
+# register has several, called CHECKPOINT.1 and so on; the first is always there.
+has_checkpoint() {
+  local name
+  for name in "$checkpoint" "$checkpoint.previous" "$checkpoint.1" "$checkpoint.1.previous"; do
+    [ ! -e "$name" ] || return 0
+  done
+  return 1
+}
+
 with_checkpoint() {
   local output
   arguments=("$@")
@@ -52,7 +61,7 @@ with_checkpoint() {
     checkpoint=${checkpoint%.*}.checkpoint.h5
     arguments+=(-checkpoint "$checkpoint")
   fi
-  if [ -z "$(option_value -restart "$@")" ] && { [ -e "$checkpoint" ] || [ -e "$checkpoint.previous" ]; }; then
+  if [ -z "$(option_value -restart "$@")" ] && has_checkpoint; then
     say "going on from $checkpoint"
     arguments+=(-restart "$checkpoint")
   fi
@@ -75,7 +84,7 @@ run_and_forward() {
 # A run that has come to its end needs no checkpoint; one that has only come to -max_it (4) may be given more.
 forget_checkpoint() {
   if [ "$code" -eq 0 ] && [ -n "${checkpoint:-}" ]; then
-    rm -f "$checkpoint" "$checkpoint.previous" "${checkpoint%.h5}.mesh.h5"
+    rm -f "$checkpoint" "$checkpoint.previous" "$checkpoint".[0-9]* "${checkpoint%.h5}.mesh.h5"
   fi
 }
 

@@ -27,7 +27,7 @@ from sweep_table import TableError, find_preset, read_table
 
 HERE = pathlib.Path(__file__).resolve().parent
 SYSTEMS = {"slurm": "sbatch", "pbs": "qsub", "lsf": "bsub"}
-MAPS = ("disk", "square", "sphere", "ball", "conformal")
+LOOKED_AT = ("disk", "square", "sphere", "ball", "conformal", "register")
 SHORTEST = 300  # seconds: two to three minutes are kept for the checkpoint
 FEWEST_VERTICES = 1000  # on a rank; below, ranks wait for each other
 
@@ -196,9 +196,8 @@ def check_run(args):
     words = args.words
     if len(words) < 2:
         raise TableError("give a command, a mesh and an output: sphere scan.ply -o map.h5")
-    if words[0] not in MAPS:
-        raise TableError(f"maps are looked at before they are submitted ({', '.join(MAPS)}), '{words[0]}' is none; "
-                         "by hand: jobs/run.slurm, run.pbs, run.lsf")
+    if words[0] not in LOOKED_AT:
+        raise TableError(f"what runs long is looked at and submitted ({', '.join(LOOKED_AT)}), '{words[0]}' is not of it")
     said = try_out(args.program, words)
     ranks, threads = args.ranks or 1, args.threads or 1
     vertices = re.search(r"([\d]+) vertices", said)

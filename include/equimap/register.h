@@ -62,6 +62,8 @@ PETSC_EXTERN PetscErrorCode EqmRegistrationSetFromOptions(EqmRegistration regist
 /* Read A and B: meshes, or results that hold a map. `file_b` may be "target": the disk, sphere or ball itself. Errors:
    EQM_ERR_IO, EQM_ERR_MESH (cannot be mapped, or A and B are not of one kind), EQM_ERR_USAGE. Collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationRead(EqmRegistration registration, const char *file_a, const char *file_b);
+/* Say on the screen what was read, and that a run can begin. Collective. */
+PETSC_EXTERN PetscErrorCode EqmRegistrationViewInput(EqmRegistration registration);
 /* Map what is no result yet, move landmarks together, compose, measure. The map's status tells how it went.
    Collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationSolve(EqmRegistration registration);
@@ -71,8 +73,8 @@ PETSC_EXTERN PetscErrorCode EqmRegistrationGetStatus(EqmRegistration registratio
 /* phi as a map of A: /map/coordinates are the points of B, three coordinates each (with B the target: of the target).
    Referenced, not to be destroyed. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationGetMap(EqmRegistration registration, EqmMap *map);
-/* With -frames, after the map has been written to `files` (as of EqmMapWrite): the time series beside the result file and
-   the frames as meshes. Errors: EQM_ERR_IO. Collective. */
+/* With -frames, after the map has been written to `files` (as of EqmMapWrite): the time series beside the result file
+   and the frames as meshes. Errors: EQM_ERR_IO. Collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationWriteFrames(EqmRegistration registration, const char *files);
 /* Print the figures. Collective. */
 PETSC_EXTERN PetscErrorCode EqmRegistrationView(EqmRegistration registration);

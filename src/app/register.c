@@ -5,7 +5,7 @@
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary;
+  PetscBool has_output, has_summary, dry_run;
 } RegisterOptions;
 
 static const char manual[] = "\n"
@@ -30,6 +30,8 @@ static PetscErrorCode AskOptions(RegisterOptions *options)
   PetscCall(PetscOptionsInt("-threads",
                             "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
                             threads, &threads, NULL));
+  PetscCall(PetscOptionsBool("-dry_run", "look at options, meshes and outputs, say whether a run would begin, and stop",
+                             NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();
   PetscFunctionReturn(0);
 }
@@ -67,6 +69,24 @@ static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, Eq
   PetscFunctionReturn(0);
 }
 
+/* Solve, write, tell. */
+static PetscErrorCode Run(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration,
+                          EqmStatus *status)
+{
+  const char *message;
+
+  PetscFunctionBegin;
+  PetscCall(EqmRegistrationSolve(registration));
+  PetscCall(EqmRegistrationGetStatus(registration, status, &message));
+  if (*status == EQM_STATUS_STOPPED) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n", EqmStatusName(*status), message));
+  } else {
+    PetscCall(Write(options, ledger, registration));
+    PetscCall(EqmRegistrationView(registration));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Run `equimap register`. Collective on PETSC_COMM_WORLD. Errors: EQM_ERR_USAGE, and those of EqmRegistrationRead and
    EqmMapWrite. */
 PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
@@ -74,7 +94,6 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
   RegisterOptions options = {0};
   EqmLedger ledger;
   EqmRegistration registration;
-  const char *message;
 
   PetscFunctionBegin;
   if (line->help) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", manual));
@@ -88,13 +107,10 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(EqmRegistrationCreate(PETSC_COMM_WORLD, ledger, &registration));
   PetscCall(EqmRegistrationSetFromOptions(registration));
   PetscCall(EqmRegistrationRead(registration, line->argument[0], line->argument[1]));
-  PetscCall(EqmRegistrationSolve(registration));
-  PetscCall(EqmRegistrationGetStatus(registration, status, &message));
-  if (*status == EQM_STATUS_STOPPED) {
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n", EqmStatusName(*status), message));
+  if (options.dry_run) {
+    PetscCall(EqmRegistrationViewInput(registration));
   } else {
-    PetscCall(Write(&options, ledger, registration));
-    PetscCall(EqmRegistrationView(registration));
+    PetscCall(Run(&options, ledger, registration, status));
   }
   PetscCall(EqmRegistrationDestroy(&registration));
   PetscCall(EqmLedgerDestroy(&ledger));

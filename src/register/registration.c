@@ -246,6 +246,18 @@ PetscErrorCode EqmRegistrationGetMap(EqmRegistration r, EqmMap *map)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmRegistrationViewInput(EqmRegistration r)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(r->comm, "%s, %" PetscInt_FMT " vertices, to ", r->a.soup->file, r->a.soup->num_vertices));
+  if (r->bare)
+    PetscCall(PetscPrintf(r->comm, "the target"));
+  else
+    PetscCall(PetscPrintf(r->comm, "%s, %" PetscInt_FMT " vertices", r->b.soup->file, r->b.soup->num_vertices));
+  PetscCall(PetscPrintf(r->comm, ": equimap register can begin, by the %s\n", r->target));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmRegistrationView(EqmRegistration r)
 {
   const EqmRegisterFigures *const f = &r->figures;

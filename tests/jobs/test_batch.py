@@ -77,6 +77,14 @@ def check_lsf():
     said = script("run.lsf", *words, expected=0, **given)
     assert "restart from " in said, said
     assert not list(pathlib.Path(".").glob("lsf.checkpoint*")), "a run that has converged needs no checkpoint"
+    # register has several checkpoints
+    words, given = ("register", "head.obj", "head.obj", "-o", "reg.h5", "-options_file", "lsf.yaml"), {**given, "LSB_JOBID": "8"}
+    write_options("lsf")
+    script("run.lsf", *words, "-wall_time", "2", expected=75, **given)
+    write_options("lsf", ENDLESS.replace("100000000", "3").replace("energy_rtol: 0", "energy_target: 1e6"))
+    said = script("run.lsf", *words, expected=0, **given)
+    assert "going on from reg.checkpoint.h5" in said and "restart from 'reg.checkpoint.h5.1'" in said, said
+    assert not list(pathlib.Path(".").glob("reg.checkpoint*")) and pathlib.Path("reg.h5").exists()
     script("sweep.lsf", "t.csv", "--results", "lsf-swept", expected=0, LSB_JOBINDEX="1", **given)
     assert os.listdir("lsf-swept") == ["one"]
 
@@ -101,6 +109,8 @@ def check_submit():
     said = submit("--system", "pbs", "--time", "10", "--sweep", "t.csv", "--results", "sent")
     assert "qsub -V -J 1-2 " in pathlib.Path("qsub.log").read_text() and "4711" in said, said
     assert "fewer would be faster" in submit("--system", "lsf", "--dry-run", "--ranks", "8", *run)
+    said = submit("--system", "lsf", "--dry-run", "register", "head.obj", "head.obj", "-o", "map.h5")
+    assert "run.lsf register head.obj head.obj -o map.h5" in said, said
     os.makedirs("closed")
     wrong = {
         ("--dry-run", "sphere", "absent.obj", "-o", "m.h5"): "cannot read absent.obj",
@@ -115,7 +125,8 @@ def check_submit():
         ("--dry-run", "--time", "soon", *run): "'soon' is no time",
         ("--dry-run", "--memory", "lots", *run): "'lots' is no amount of memory",
         ("--dry-run", "--sweep", "absent.csv"): "cannot read the table",
-        ("--dry-run", "register", "head.obj", "head.obj", "-o", "m.h5"): "'register' is none",
+        ("--dry-run", "register", "head.obj", "absent.obj", "-o", "m.h5"): "cannot read absent.obj",
+        ("--dry-run", "generate", "head", "-o", "m.h5"): "'generate' is not of it",
         ("--dry-run",): "--sweep TABLE",
         (*run,): "no bsub",
     }
