@@ -19,6 +19,7 @@ class Equimap(CMakePackage):
     depends_on("cmake@3.18:", type="build")
     depends_on("pkgconfig", type="build")
     depends_on("mpi")
+    depends_on("lapack")
     depends_on("petsc@3.18:+mpi+double~complex+hdf5+mumps+suite-sparse+hypre")
     depends_on("mumps+mpi+double")
     depends_on("metis@5.1:")
@@ -29,6 +30,7 @@ class Equimap(CMakePackage):
     depends_on("zlib-api")
     depends_on("cairo+pdf+svg+png+fc+ft", when="+report")
     depends_on("py-h5py", type="test")
+    depends_on("py-numpy", type="test")
 
     def cmake_args(self):
         return [
