@@ -158,7 +158,7 @@ static PetscErrorCode Check(EqmSolver solver, PetscInt num_fix, PetscInt num_coo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmConformalAsk(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+PetscErrorCode EqmMoebiusAsk(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
 {
   EqmSettings *const set = &solver->settings;
   PetscInt num_fix = 3, num_coordinates = 9;

@@ -33,8 +33,6 @@ PETSC_INTERN PetscErrorCode EqmAngleWeights(EqmSolver solver, const PetscReal **
 /* Lumped weights of the vertices, which add up to one; made at the first need and kept. Collective. */
 PETSC_INTERN PetscErrorCode EqmVertexMass(EqmSolver solver, const PetscReal **mass);
 
-/* Options for it. Collective. */
-PETSC_INTERN PetscErrorCode EqmConformalAsk(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
 /* The Mobius map that brings the mass centre of a map to the sphere to the sphere's own, 004 Definition 2.3
    (src/method/normalise.c). Collective. */
 PETSC_INTERN PetscErrorCode EqmMoebiusCenter(EqmSolver solver);
@@ -42,5 +40,7 @@ PETSC_INTERN PetscErrorCode EqmMoebiusCenter(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMoebiusLeastArea(EqmSolver solver, EqmPlace *place);
 /* The Mobius map that makes an angle-preserving map of a closed surface unique (src/method/normalise.c). Collective. */
 PETSC_INTERN PetscErrorCode EqmConformalFinish(EqmSolver solver);
+/* Options for it. Collective. */
+PETSC_INTERN PetscErrorCode EqmMoebiusAsk(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
 
 #endif

@@ -46,4 +46,10 @@ PETSC_INTERN PetscErrorCode EqmProblemMethodNames(const char *target, char *text
 /* Ask the options database for what the target's rows and their methods have of their own. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemAskOptions(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
 
+/* ---- options of one problem only (src/method/problem_options.c) */
+PETSC_INTERN PetscErrorCode EqmAskCorners(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+PETSC_INTERN PetscErrorCode EqmAskCenter(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+PETSC_INTERN PetscErrorCode EqmAskConformal(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+PETSC_INTERN PetscErrorCode EqmAskBall(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+
 #endif
