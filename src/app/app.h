@@ -61,6 +61,8 @@ PETSC_INTERN PetscErrorCode EqmSweepOutput(const char *files);
 PETSC_INTERN PetscErrorCode EqmCloseBooks(EqmLedger ledger, EqmMap map);
 PETSC_INTERN PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ...);
 
+/* -threads, which main takes before any command: asked again to be listed by --help. */
+PETSC_INTERN PetscErrorCode EqmAskThreads(PetscOptionItems *PetscOptionsObject);
 /* Fail with EQM_ERR_USAGE if an option was given that nobody asked for. Call after all options have been read, before
    the work starts. Collective. */
 PETSC_INTERN PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line);

@@ -1,7 +1,6 @@
 /* equimap disk | square | sphere MESH -o OUT: read, diagnose, distribute, minimise, measure, write. */
 #include "app.h"
 #include "base/stop.h"
-#include <omp.h>
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
@@ -15,8 +14,6 @@ typedef struct {
 
 static PetscErrorCode AskOptions(MapOptions *options)
 {
-  PetscInt threads = omp_get_max_threads(); /* taken by main before any command; asked here to be listed by --help */
-
   PetscFunctionBegin;
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
   PetscCall(PetscOptionsString("-o",
@@ -45,9 +42,7 @@ static PetscErrorCode AskOptions(MapOptions *options)
                             "compute so many of the smallest eigenvalues of the energy's Hessian at the result (needs "
                             "a build with SLEPc)",
                             NULL, options->hessian_eigenvalues, &options->hessian_eigenvalues, NULL));
-  PetscCall(PetscOptionsInt("-threads",
-                            "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
-                            threads, &threads, NULL));
+  PetscCall(EqmAskThreads(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-dry_run", "look at options, mesh and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();

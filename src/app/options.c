@@ -1,5 +1,7 @@
-/* Options that nobody asked for are mistakes, and a mistake is said before the work starts, not after. */
+/* Options: one that commands share; those that nobody asked for, which are mistakes, and a mistake is said before the
+   work starts, not after. */
 #include "app.h"
+#include <omp.h>
 #include <string.h>
 
 /* What PETSc asks for later than we do, when it ends or in the middle of the work. */
@@ -38,6 +40,17 @@ static PetscBool IsTrusted(const char *name)
     return PETSC_TRUE;
   }
   return PETSC_FALSE;
+}
+
+PetscErrorCode EqmAskThreads(PetscOptionItems *PetscOptionsObject)
+{
+  PetscInt threads = omp_get_max_threads();
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsInt("-threads",
+                            "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
+                            threads, &threads, NULL));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line)

@@ -1,7 +1,6 @@
 /* equimap register A B -o OUT: a measure-preserving correspondence between two surfaces or two solids. */
 #include "app.h"
 #include "base/stop.h"
-#include <omp.h>
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN];
@@ -17,8 +16,6 @@ static const char manual[] = "\n"
 
 static PetscErrorCode AskOptions(RegisterOptions *options)
 {
-  PetscInt threads = omp_get_max_threads(); /* taken by main before any command; asked here to be listed by --help */
-
   PetscFunctionBegin;
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
   PetscCall(PetscOptionsString("-o",
@@ -27,9 +24,7 @@ static PetscErrorCode AskOptions(RegisterOptions *options)
                                NULL, "", options->output, sizeof(options->output), &options->has_output));
   PetscCall(PetscOptionsString("-summary", "write the run's figures as JSON", NULL, "", options->summary,
                                sizeof(options->summary), &options->has_summary));
-  PetscCall(PetscOptionsInt("-threads",
-                            "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
-                            threads, &threads, NULL));
+  PetscCall(EqmAskThreads(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-dry_run", "look at options, meshes and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();

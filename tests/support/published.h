@@ -43,4 +43,17 @@ static inline PetscErrorCode TestRow(EqmMesh mesh, const char *target, const cha
   PetscFunctionReturn(0);
 }
 
+/* A test's main: `test` takes the mesh over; without it nothing is tested, and said so by the exit code. */
+static inline int TestOnPublished(int argc, char **argv, const char *name, PetscErrorCode (*test)(EqmSoup))
+{
+  EqmSoup soup;
+
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestReadPublished(name, &soup));
+  if (soup) PetscCall(test(soup));
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(soup ? 0 : SKIPPED);
+}
+
 #endif

@@ -39,16 +39,11 @@ static PetscErrorCode TestUniqueness(EqmMesh mesh)
   PetscFunctionReturn(0);
 }
 
-/* Without data nothing is tested, and said so by the exit code. */
-static PetscErrorCode Test(PetscBool *skipped)
+static PetscErrorCode Test(EqmSoup soup)
 {
-  EqmSoup soup;
   TestMesh test;
 
   PetscFunctionBegin;
-  PetscCall(TestReadPublished("disk_stanford_bunny.obj", &soup));
-  *skipped = (PetscBool)!soup;
-  if (*skipped) PetscFunctionReturn(0);
   PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(TestRows(test.mesh));
   PetscCall(TestUniqueness(test.mesh));
@@ -58,11 +53,5 @@ static PetscErrorCode Test(PetscBool *skipped)
 
 int main(int argc, char **argv)
 {
-  PetscBool skipped;
-
-  PetscFunctionBeginUser;
-  PetscCall(EqmInitialize(&argc, &argv));
-  PetscCall(Test(&skipped));
-  PetscCall(EqmFinalize());
-  PetscFunctionReturn(skipped ? SKIPPED : 0);
+  return TestOnPublished(argc, argv, "disk_stanford_bunny.obj", Test);
 }

@@ -33,48 +33,37 @@ static PetscErrorCode TestPromises(EqmMesh mesh)
 }
 
 /* 001 Table 8: noise of .005, 100 steps: 5.51e-3 and .0211, for random numbers that nobody else has. */
-static PetscErrorCode TestNoise(EqmSoup *soup)
+static PetscErrorCode TestNoise(EqmSoup soup)
 {
   PetscReal energy, sd;
   TestMesh test;
 
   PetscFunctionBegin;
-  PetscCall(EqmSoupAddNoise(*soup, 5e-3, 1));
-  PetscCall(TestMeshFromSoup(*soup, &test));
+  PetscCall(EqmSoupAddNoise(soup, 5e-3, 1));
+  PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(TestRow(test.mesh, "sphere", "-method rgd -max_it 100 -energy_rtol 0", &energy, &sd));
   CHECK_CLOSE(energy, 5.51e-3, .25, 5.51e-3);
   CHECK_CLOSE(sd, .0211, .15, .0211);
   PetscCall(TestMeshDestroy(&test));
-  *soup = NULL;
   PetscFunctionReturn(0);
 }
 
-/* Without data nothing is tested, and said so by the exit code. */
-static PetscErrorCode Test(PetscBool *skipped)
+static PetscErrorCode Test(EqmSoup soup)
 {
-  EqmSoup soup, copy;
+  EqmSoup copy;
   TestMesh test;
 
   PetscFunctionBegin;
-  PetscCall(TestReadPublished("sphere_david_head.obj", &soup));
-  *skipped = (PetscBool)!soup;
-  if (*skipped) PetscFunctionReturn(0);
   PetscCall(EqmSoupCopy(soup, &copy));
   PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(TestPublished(test.mesh));
   PetscCall(TestPromises(test.mesh));
   PetscCall(TestMeshDestroy(&test));
-  PetscCall(TestNoise(&copy));
+  PetscCall(TestNoise(copy));
   PetscFunctionReturn(0);
 }
 
 int main(int argc, char **argv)
 {
-  PetscBool skipped;
-
-  PetscFunctionBeginUser;
-  PetscCall(EqmInitialize(&argc, &argv));
-  PetscCall(Test(&skipped));
-  PetscCall(EqmFinalize());
-  PetscFunctionReturn(skipped ? SKIPPED : 0);
+  return TestOnPublished(argc, argv, "sphere_david_head.obj", Test);
 }
