@@ -90,6 +90,18 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 
 /* ---- life */
 
+static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  PetscInt *const inner = &solver->settings.lm_inner;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsBoundedInt("-lm_inner",
+                                   "lm: at most so many quasi-Newton steps on each factor; with 0 a map takes more "
+                                   "factorisations, and hardly magnifies the rounding of the input",
+                                   "EqmSolverSetFromOptions", *inner, inner, NULL, 0));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode TrialCreate(EqmSolver solver, EqmTrial *trial)
 {
   const PetscInt n = solver->mesh->num_local_cells;
@@ -208,6 +220,7 @@ static PetscErrorCode Destroy(EqmSolver solver)
 const EqmMethod EqmMethodLm = {
     .name = "lm",
     .purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration: the house's own",
+    .options = Options,
     .set_up = SetUp,
     .step = Step,
     .state = State,

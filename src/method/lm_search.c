@@ -2,7 +2,7 @@
 #include "method/lm.h"
 #include <math.h>
 
-enum { MOST_HALVINGS = 7, MOST_INNER = 100, INNER_WINDOW = 5 };
+enum { MOST_HALVINGS = 7, INNER_WINDOW = 5 };
 /* A factorisation costs about as much as so many quasi-Newton steps. */
 static const PetscReal factor_cost = 25.;
 
@@ -87,13 +87,16 @@ static PetscBool IsUsedUp(PetscInt steps, const PetscReal *objective, PetscReal 
 PetscErrorCode EqmLmInnerSteps(EqmSolver solver)
 {
   EqmLm *const lm = solver->data;
-  PetscReal objective[MOST_INNER + 1], t = .25, slope;
+  const PetscInt most = solver->settings.lm_inner;
+  PetscReal *objective, t = .25, slope;
 
   PetscFunctionBegin;
+  if (most == 0) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(most + 1, &objective));
   objective[0] = lm->now.objective;
   PetscCall(EqmPairsForget(lm->pairs));
   PetscCall(EqmLmGradient(solver)); /* lm->mean stays the factor's */
-  for (PetscInt k = 0; k < MOST_INNER && (k == 0 || !IsUsedUp(k, objective, solver->objective)); k++) {
+  for (PetscInt k = 0; k < most && (k == 0 || !IsUsedUp(k, objective, solver->objective)); k++) {
     PetscCall(VecCopy(lm->descent, lm->direction));
     PetscCall(EqmPairsDirection(lm->pairs, EqmLmApplyInverse, solver, lm->direction));
     PetscCall(VecDot(lm->descent, lm->direction, &slope));
@@ -107,5 +110,6 @@ PetscErrorCode EqmLmInnerSteps(EqmSolver solver)
         EqmPairsAdd(lm->pairs, t, lm->direction, lm->descent, lm->old_descent)); /* descent is minus the gradient */
     objective[k + 1] = lm->now.objective;
   }
+  PetscCall(PetscFree(objective));
   PetscFunctionReturn(0);
 }

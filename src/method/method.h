@@ -40,6 +40,7 @@ typedef struct {
   PetscInt corners[4];
   char checkpoint[PETSC_MAX_PATH_LEN], restart[PETSC_MAX_PATH_LEN]; /* empty: none */
   PetscInt checkpoint_every;                                        /* iterations; 0: only at the end */
+  PetscInt lm_inner;                                                /* lm: quasi-Newton steps on a factor */
   /* ncg */
   PetscInt ncg_refresh;
   PetscEnum ncg_beta; /* an EqmNcgBeta */
@@ -218,8 +219,10 @@ PETSC_INTERN PetscErrorCode EqmBallStart(EqmSolver solver, PetscInt steps);
 PETSC_INTERN PetscErrorCode EqmBallUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after);
 PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after);
 
-/* The largest step in (0, 1] along a straight motion that keeps cells of positive area positive, with a margin: .9 of
-   the first zero. `velocity` per local vertex. Collective. */
+/* A step in (0, 1] along a straight motion that keeps cells of positive area well away from zero: the whole one if it
+   ends short of the first zero by a margin, else half the way there. (To go nearly all the way saves little and leaves
+   a triangle so flat that the last digits of its corners decide on what follows.) `velocity` per local vertex.
+   Collective. */
 PETSC_INTERN PetscErrorCode EqmStepToFold(EqmSolver solver, const PetscReal *velocity, PetscReal *step);
 
 #endif

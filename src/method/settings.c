@@ -14,6 +14,7 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
                             .balance = -1.,
                             .stagnation = 5,
                             .checkpoint_every = -1,
+                            .lm_inner = 100,
                             .ncg_guard = PETSC_TRUE,
                             .anisotropic_scaling = PETSC_TRUE,
                             .boundary_max_it = -1,

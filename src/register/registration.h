@@ -27,6 +27,8 @@ typedef struct {
    composition; and the farther a map is polished, the more rounding decides which of many equally good ones it becomes
    (docs/methods.md, Uniqueness). */
 #define EQM_REGISTER_RATIO_TOL 3e-3
+/* -lm_inner of these maps: damped steps pass differences on as they are, quasi-Newton steps magnify them. */
+#define EQM_REGISTER_INNER 0
 
 /* One of the two meshes with its map to the target. */
 typedef struct {

@@ -155,7 +155,10 @@ PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side)
   if (!r->set.quiet)
     PetscCall(PetscPrintf(r->comm, "map of %s: %s to the %s\n", side->name, side->soup->file, r->target));
   PetscCall(EqmSolverCreate(side->mesh, r->target, &solver));
-  if (side->mesh->cell_size == 3) solver->settings.ratio_tol = EQM_REGISTER_RATIO_TOL;
+  if (side->mesh->cell_size == 3) {
+    solver->settings.ratio_tol = EQM_REGISTER_RATIO_TOL;
+    solver->settings.lm_inner = EQM_REGISTER_INNER;
+  }
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmRegistrationMinimise(r, solver));
   PetscCall(EqmSolverGetMap(solver, side->soup, &side->map));

@@ -124,7 +124,7 @@ PetscErrorCode EqmStepToFold(EqmSolver solver, const PetscReal *velocity, PetscR
     if (a[c] > 0.) local = PetscMin(local, FirstZero(a[c], first[c], .5 * second[c]));
   }
   PetscCall(MPIU_Allreduce(&local, step, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
-  *step = PetscMin(1., .9 * *step);
+  *step = *step > 1.1 ? 1. : .5 * *step;
   PetscCall(PetscFree3(first, second, a));
   PetscFunctionReturn(0);
 }
