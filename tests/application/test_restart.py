@@ -89,8 +89,8 @@ def leftovers(program, name=""):
 
 def check_kills(program, ranks, times, rng):
     """Killed again and again, at any time and while writing, restarted until it ends: as if nothing had happened."""
-    method = ("lbfgs", "lm", "rgd")[ranks - 1]
-    run = lambda *more: ("disk", "hills.obj", "-method", method, "-max_it", 30, *ENDLESS, *more)  # noqa: E731
+    method, iterations = (("lbfgs", 30), ("lm", 12), ("rgd", 20))[ranks - 1]
+    run = lambda *more: ("disk", "hills.obj", "-method", method, "-max_it", iterations, *ENDLESS, *more)  # noqa: E731
     program.succeed(*run("-max_it", 0, "-checkpoint", "start.ck", *outputs("start")), codes=(4,), ranks=ranks)
     begun = time.time()
     program.succeed(*run("-restart", "start.ck", "-checkpoint", "whole.ck", "-checkpoint_every", 1, *outputs("whole")), codes=(4,),
