@@ -10,8 +10,8 @@
 #include "method/checkpoint.h"
 #include "method/state.h"
 
-/* A penalty on folds of maps to the ball (src/unfold/hinge.c). */
-typedef struct _p_EqmHinge *EqmHinge;
+/* A barrier against folds of maps to the ball (src/unfold/barrier.c). */
+typedef struct _p_EqmBarrier *EqmBarrier;
 
 /* What a step came to. */
 typedef enum {
@@ -97,7 +97,7 @@ struct _p_EqmSolver {
   PetscReal last_shown;                  /* seconds when the last row was printed */
   PetscInt rows_shown;                   /* num_history at that time */
   PetscInt64 unfolded_from, unfolded_to; /* folds before and after the last unfolding; 0, 0: none was needed */
-  EqmHinge hinge;                        /* ball: added to the energy while folds are mended; else NULL */
+  EqmBarrier barrier;                    /* ball: added to the energy while folds are mended; else NULL */
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
   char linear_solver[EQM_LINEAR_TEXT]; /* what solves with the method's matrices */

@@ -7,7 +7,7 @@
 #include "method/method.h"
 #include "energy/kernel.h"
 #include "linalg/blockfactor.h"
-#include "unfold/hinge.h"
+#include "unfold/barrier.h"
 
 struct _p_EqmMetric {
   PetscReal *weights, *mass, *columns, *ambient;
@@ -75,7 +75,6 @@ static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
   const PetscReal *const x = gn->solver->place.x, *const p[] = {x + 3 * v[0], x + 3 * v[1], x + 3 * v[2], x + 3 * v[3]};
   PetscReal gradient[12], frame[4][9], laplacian[4][4], rate[12];
   const PetscReal weight = domain->mesh->weight[cell];
-  const PetscReal stiffness = (1. + EqmHingeStiffness(gn->solver->hinge, weight, gn->solver->image[cell])) / weight;
   PetscInt corner[12], number[12], n = 0;
 
   EqmVolumeGradient(p, gradient);
@@ -91,10 +90,11 @@ static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
   for (PetscInt i = 0; i < n; i++) {
     for (PetscInt j = 0; j < n; j++) {
       const PetscInt a = corner[i], b = corner[j];
-      matrix[n * i + j] = rate[i] * rate[j] * stiffness +
+      matrix[n * i + j] = rate[i] * rate[j] / weight +
                           .05 * laplacian[a][b] * EqmDot3(frame[a] + 3 * number[i], frame[b] + 3 * number[j]);
     }
   }
+  if (gn->solver->barrier) EqmBarrierAddMatrix(gn->solver, cell, matrix);
 }
 
 /* Factor what belongs to the present map. */

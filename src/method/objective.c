@@ -1,6 +1,6 @@
 /* The objectives of the area- and volume-preserving maps. */
 #include "method/method.h"
-#include "unfold/hinge.h"
+#include "unfold/barrier.h"
 
 PetscErrorCode EqmSumMeasures(EqmSolver solver)
 {
@@ -15,13 +15,13 @@ PetscErrorCode EqmSumMeasures(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* With the penalty on folds, while there is one. */
+/* With the barrier against folds, while there is one. */
 static PetscErrorCode Evaluate(EqmSolver solver, const EqmPlace *place, PetscReal *image, PetscReal *value,
                                Vec gradient)
 {
   PetscFunctionBegin;
   PetscCall(EqmAuthalicEnergy(solver->domain, place, image, value, gradient));
-  if (solver->hinge) PetscCall(EqmHingeAdd(solver, solver->hinge, place, image, value, gradient));
+  if (solver->barrier) PetscCall(EqmBarrierAdd(solver, solver->barrier, place, image, value, gradient));
   PetscFunctionReturn(0);
 }
 
@@ -31,6 +31,7 @@ static PetscErrorCode StretchMetric(EqmSolver solver, PetscReal *weights, PetscR
 {
   PetscFunctionBegin;
   PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
+  if (solver->barrier) EqmBarrierAddLaplacian(solver, weights);
   *with_mass = solver->domain->curved_image;
   if (*with_mass) {
     PetscCall(EqmImageMeasure(solver->domain, &solver->place, mass));

@@ -1,5 +1,6 @@
 /* The loop that all methods share: start, iterate, judge, stop. */
 #include "method/method.h"
+#include <string.h>
 
 PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *out)
 {
@@ -210,22 +211,45 @@ static PetscErrorCode Iterate(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* The problem's last touch, and folds mended if that can be done; a map with folds is no success. */
+/* A map with folds is no success, wherever they are. */
+static PetscErrorCode JudgeFolds(EqmSolver solver)
+{
+  const PetscBool solid = (PetscBool)(solver->mesh->cell_size == 4);
+  PetscInt64 on_boundary = 0;
+
+  PetscFunctionBegin;
+  if (solid) PetscCall(EqmImageBoundaryFolds(solver->domain, &solver->place, &on_boundary));
+  if (solver->totals.folds == 0 && on_boundary == 0) PetscFunctionReturn(0);
+  solver->status = EQM_STATUS_FOLDS;
+  PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "%" PetscInt64_FMT " %s of the map are folded over",
+                          solver->totals.folds, solid ? "tetrahedra" : "triangles"));
+  if (solid) {
+    PetscCall(PetscSNPrintf(solver->message + strlen(solver->message),
+                            sizeof(solver->message) - strlen(solver->message),
+                            ", and %" PetscInt64_FMT
+                            " triangles of its boundary; where `check` finds interior edges between boundary vertices, "
+                            "-repair splits them, which helps; else",
+                            on_boundary));
+  } else {
+    PetscCall(PetscStrlcat(solver->message, ";", sizeof(solver->message)));
+  }
+  PetscCall(PetscStrlcat(solver->message, " try the default method and its start", sizeof(solver->message)));
+  PetscFunctionReturn(0);
+}
+
+/* The problem's last touch, and folds mended if that can be done. */
 static PetscErrorCode End(EqmSolver solver)
 {
   PetscFunctionBegin;
   if (solver->problem->finish) PetscCall(solver->problem->finish(solver));
   if (solver->problem->unfold && solver->totals.folds > 0) {
+    PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
     PetscCall(solver->problem->unfold(solver, &solver->unfolded_from, &solver->unfolded_to));
+    PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
     PetscCall(EqmSolverLook(solver));
     PetscCall(EqmMonitorUnfolded(solver, "at the end"));
   }
-  if (solver->totals.folds > 0) {
-    solver->status = EQM_STATUS_FOLDS;
-    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
-                            "%" PetscInt64_FMT " %s of the map are folded over; try the default method and its start",
-                            solver->totals.folds, solver->mesh->cell_size == 4 ? "tetrahedra" : "triangles"));
-  }
+  PetscCall(JudgeFolds(solver));
   PetscFunctionReturn(0);
 }
 

@@ -92,12 +92,16 @@ static PetscErrorCode MapSurface(EqmSolver solver, EqmMesh surface, EqmSolver *s
   const PetscBool by_fixed_point = (PetscBool)(solver->method == &EqmMethodFixedPoint);
   const char *const method = !set->boundary_method[0] && by_fixed_point ? solver->method->name : set->boundary_method;
   PetscInt max_it = set->boundary_max_it;
+  const char *enough = "";
   char text[256];
   PetscOptions options;
 
   PetscFunctionBegin;
-  if (max_it < 0) max_it = by_fixed_point ? 10 : 4; /* a long run would magnify the last digits of the input */
-  PetscCall(PetscSNPrintf(text, sizeof(text), "-quiet -max_it %" PetscInt_FMT "%s%s%s%s", max_it,
+  if (max_it < 0) {
+    max_it = by_fixed_point ? 10 : 60;
+    enough = by_fixed_point ? "" : " -ratio_tol .1"; /* a longer run would magnify the last digits of the input */
+  }
+  PetscCall(PetscSNPrintf(text, sizeof(text), "-quiet -max_it %" PetscInt_FMT "%s%s%s%s%s", max_it, enough,
                           method[0] ? " -method " : "", method, set->boundary_start[0] ? " -start " : "",
                           set->boundary_start));
   PetscCall(PetscOptionsCreate(&options));

@@ -91,7 +91,7 @@ static PetscErrorCode TestRanks(void)
   PetscFunctionReturn(0);
 }
 
-/* A vertex pulled through its neighbours' faces folds cells; the hinge puts it back. */
+/* A vertex pulled through its neighbours' faces folds cells; unfolding puts it back. */
 static PetscErrorCode TestUnfolding(void)
 {
   TestMesh test;
