@@ -53,7 +53,7 @@ PetscErrorCode EqmAskBall(EqmSolver solver, PetscOptionItems *PetscOptionsObject
   PetscCall(PetscOptionsString("-boundary_start", "start: the first map of the surface to the sphere",
                                "EqmSolverSetFromOptions", set->boundary_start, set->boundary_start,
                                sizeof(set->boundary_start), NULL));
-  PetscCall(PetscOptionsInt("-boundary_max_it", "start: at most so many iterations for the surface (-1: few)",
+  PetscCall(PetscOptionsInt("-boundary_max_it", "start: so many iterations for the surface (-1: until its map is good)",
                             "EqmSolverSetFromOptions", set->boundary_max_it, &set->boundary_max_it, NULL));
   PetscFunctionReturn(0);
 }
