@@ -3,8 +3,8 @@
 #include "base/stop.h"
 
 typedef struct {
-  char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary, dry_run;
+  char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN];
+  PetscBool has_output, has_summary, has_history, dry_run;
 } RegisterOptions;
 
 static const char manual[] = "\n"
@@ -24,6 +24,8 @@ static PetscErrorCode AskOptions(RegisterOptions *options)
                                NULL, "", options->output, sizeof(options->output), &options->has_output));
   PetscCall(PetscOptionsString("-summary", "write the run's figures as JSON", NULL, "", options->summary,
                                sizeof(options->summary), &options->has_summary));
+  PetscCall(PetscOptionsString("-history", "write a row per iteration of the last minimisation for A as CSV", NULL, "",
+                               options->history, sizeof(options->history), &options->has_history));
   PetscCall(EqmAskThreads(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-dry_run", "look at options, meshes and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
@@ -44,6 +46,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const RegisterO
   for (int k = 0; k < 2; k++) {
     PetscCall(EqmCheckOutput(line->argument[k], options->output));
     if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[k], options->summary));
+    if (options->has_history) PetscCall(EqmCheckOutput(line->argument[k], options->history));
   }
   PetscFunctionReturn(0);
 }
@@ -58,6 +61,7 @@ static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, Eq
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
   PetscCall(EqmMapWrite(map, options->output));
   PetscCall(EqmRegistrationWriteFrames(registration, options->output));
+  if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
   PetscCall(EqmCloseBooks(ledger, map));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));

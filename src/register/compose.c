@@ -118,6 +118,7 @@ PetscErrorCode EqmMeasureCorrespondence(EqmRegistration r)
 
   PetscFunctionBegin;
   PetscCall(EqmMapMeasure(r->map, r->a.mesh, r->image));
+  if (r->kind == EQM_IMAGE_SPACE) r->figures.folds_phi = r->map->distortion.folds; /* in space triangles have no sign */
   PetscCall(EqmMapCreate(r->a.soup, r->dim, &measured));
   PetscCall(EqmMapMeasure(measured, r->a.mesh, r->a.x));
   r->figures.energy = measured->distortion.energy;

@@ -92,6 +92,7 @@ static PetscErrorCode AddFiguresOfB(EqmRegistration r)
   PetscCall(EqmMapAddFigure(r->map, "register.b.measure", r->b.map->distortion.mesh_measure));
   PetscCall(EqmMapAddFigure(r->map, "register.b.energy", f->energy_b));
   PetscCall(EqmMapAddFigure(r->map, "register.b.folds", (PetscReal)f->folds_b));
+  if (r->kind == EQM_IMAGE_SPACE) PetscCall(EqmMapAddFigure(r->map, "register.folds", (PetscReal)f->folds_phi));
   PetscCall(EqmMapAddFigure(r->map, "register.dissimilarity", f->dissimilarity));
   PetscCall(EqmMapAddFigure(r->map, "register.dissimilarity_rigid", f->dissimilarity_rigid));
   PetscCall(AddClamped(r, "forward", r->forward));

@@ -82,6 +82,11 @@ static PetscErrorCode Ask(EqmRegisterSettings *set, PetscOptionItems *PetscOptio
   PetscCall(PetscOptionsString("-map_a", "the map of A, made before, where A itself holds none", NULL, "", set->map_a,
                                sizeof(set->map_a), NULL));
   PetscCall(PetscOptionsString("-map_b", "the map of B", NULL, "", set->map_b, sizeof(set->map_b), NULL));
+  PetscCall(PetscOptionsString("-density_a",
+                               "a positive weight per cell of A (CSV with a header, or /cell/density of an HDF5 file): "
+                               "keep mass instead of area or volume",
+                               NULL, "", set->density_a, sizeof(set->density_a), NULL));
+  PetscCall(PetscOptionsString("-density_b", "the same of B", NULL, "", set->density_b, sizeof(set->density_b), NULL));
   PetscCall(
       PetscOptionsEnum("-align",
                        "without landmarks, the rotation between the maps: pose, such that A and B correspond as "
@@ -141,8 +146,8 @@ PetscErrorCode EqmRegistrationRead(EqmRegistration r, const char *file_a, const 
 {
   PetscFunctionBegin;
   r->bare = (PetscBool)!strcmp(file_b, "target");
-  PetscCall(EqmSideRead(r, &r->a, file_a, r->set.map_a));
-  if (!r->bare) PetscCall(EqmSideRead(r, &r->b, file_b, r->set.map_b));
+  PetscCall(EqmSideRead(r, &r->a, file_a, r->set.density_a, r->set.map_a));
+  if (!r->bare) PetscCall(EqmSideRead(r, &r->b, file_b, r->set.density_b, r->set.map_b));
   if (r->set.has_landmarks)
     PetscCall(EqmLandmarkListRead(r->comm, r->set.landmarks, r->a.soup->num_vertices,
                                   r->bare ? -1 : r->b.soup->num_vertices, &r->landmarks));
@@ -177,6 +182,11 @@ static PetscErrorCode Judge(EqmRegistration r)
                             "-landmark_weight, more -landmark_stages or another -landmark_reach",
                             (double)f->landmark_max, (double)r->set.tolerance));
   }
+  if (f->folds_phi > 0) {
+    r->status = EQM_STATUS_FOLDS;
+    PetscCall(PetscSNPrintf(r->message, sizeof(r->message),
+                            "%" PetscInt64_FMT " tetrahedra of A are flat or turned inside out on B", f->folds_phi));
+  }
   if (folds > 0) {
     r->status = EQM_STATUS_FOLDS;
     PetscCall(PetscSNPrintf(r->message, sizeof(r->message),
@@ -203,7 +213,7 @@ static PetscErrorCode TakeRun(EqmRegistration r)
   to->energy_initial = from->num_history ? from->energy_initial : r->figures.energy;
   to->energy_final = r->figures.energy;
   to->num_boundary_vertices = r->a.mesh->num_boundary_vertices;
-  if (r->kind != EQM_IMAGE_SPACE) to->distortion.folds = r->figures.folds_a + r->figures.folds_b;
+  to->distortion.folds = r->figures.folds_a + r->figures.folds_b + r->figures.folds_phi;
   PetscCall(PetscStrncpy(to->method, from->method, sizeof(to->method)));
   PetscCall(PetscStrncpy(to->command, "register", sizeof(to->command)));
   PetscFunctionReturn(0);
@@ -267,7 +277,7 @@ PetscErrorCode EqmRegistrationView(EqmRegistration r)
   PetscCall(PetscPrintf(r->comm, "\n%s -> %s by the %s\n  %s: %s\n", r->a.soup->file,
                         r->bare ? "the target" : r->b.soup->file, r->target, EqmStatusName(r->status), r->message));
   PetscCall(PetscPrintf(r->comm, "  energy        %.6e of the map of A to the target, %" PetscInt64_FMT " folds\n",
-                        (double)f->energy, f->folds_a + f->folds_b));
+                        (double)f->energy, r->map->distortion.folds));
   PetscCall(PetscPrintf(r->comm, "  ratio         sd %.3e   min %.4f   median %.6f   max %.4f, A to B in space\n",
                         (double)d->ratio.sd, (double)d->ratio.min, (double)d->ratio.p50, (double)d->ratio.max));
   if (r->landmarks.num)

@@ -13,7 +13,7 @@ typedef enum { EQM_POINTS_AUTO, EQM_POINTS_SURFACE, EQM_POINTS_TARGET } EqmLandm
 
 typedef struct {
   char landmarks[PETSC_MAX_PATH_LEN], map_a[PETSC_MAX_PATH_LEN], map_b[PETSC_MAX_PATH_LEN],
-      transfer[PETSC_MAX_PATH_LEN];
+      density_a[PETSC_MAX_PATH_LEN], density_b[PETSC_MAX_PATH_LEN], transfer[PETSC_MAX_PATH_LEN];
   PetscBool has_landmarks, quiet;
   EqmRegisterBy by;
   EqmLandmarkStart start;
@@ -51,6 +51,7 @@ typedef struct {
   PetscReal energy_b;                                /* of g, where it was moved of h o g */
   PetscReal energy;                                  /* E of h o f */
   PetscInt64 folds_a, folds_b;                       /* of h o f and, where it was moved, of g */
+  PetscInt64 folds_phi;                              /* solids: of phi itself, A's cells with their vertices on B */
   PetscInt64 most_frame_folds;                       /* of a frame of the morph */
 } EqmRegisterFigures;
 
@@ -78,7 +79,10 @@ struct _p_EqmRegistration {
 };
 
 /* ---- side.c */
-PETSC_INTERN PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *map_file);
+/* Read a mesh, with its density if `density_file` is not empty, and its map if the file holds one or `map_file` names
+   one. Collective. */
+PETSC_INTERN PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *density_file,
+                                        const char *map_file);
 PETSC_INTERN PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side);
 /* Run a solver that is ready, as the next stage; takes note if it was stopped to be continued. Collective. */
 PETSC_INTERN PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver);

@@ -105,14 +105,15 @@ static PetscErrorCode WeighVertices(EqmSide *side)
   PetscFunctionReturn(0);
 }
 
-/* Read a mesh, and its map if the file holds one or `map_file` names one. Collective. */
-PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *map_file)
+PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *density_file,
+                           const char *map_file)
 {
   PetscBool holds;
 
   PetscFunctionBegin;
   PetscCall(EqmPhaseBegin(r->ledger, EQM_PHASE_READ));
   PetscCall(EqmSoupRead(r->comm, file, &side->soup));
+  if (density_file[0]) PetscCall(EqmSoupReadDensity(side->soup, density_file));
   PetscCall(HoldsMap(r->comm, file, &holds));
   if (map_file[0])
     PetscCall(EqmMapRead(side->soup, map_file, &side->map));

@@ -81,7 +81,9 @@ def check_landmarks(program):
     program.write("height.csv", "height\n" + "".join(f"{z!r}\n" for z in vertices[:, 0].tolist()))
     program.write("side.csv", "left,right\n" + "".join(f"{int(x < .5)},{int(x >= .5)}\n" for x in vertices[cells[:, 0], 0]))
     summary, file = run(program, "hills.obj", "deformed.obj", "-landmarks", "pairs.csv", "-quiet", "-frames", 4,
-                        "-transfer", "height.csv,side.csv")
+                        "-transfer", "height.csv,side.csv", "-history", "out.csv")
+    history = program.read("out.csv").decode().split("\n")
+    assert history[0].startswith("iteration,") and len(history) == summary["iterations"] + 3
     figures = summary["register"]
     assert summary["folds"] == 0 and summary["energy"]["final"] < 1e-4
     assert figures["landmarks"]["count"] == 20 and figures["landmarks"]["error"]["max"] <= 1e-3
@@ -155,6 +157,28 @@ def check_ball(program):
     summary, file = run(program, "a.h5", "b.h5", "-quiet", "-align", "pose")
     assert summary["register"]["dissimilarity_rigid"] > 1e-2, "the pose of a turned solid is another one"
     file.close()
+    check_folded_solid(program, vertices, cells)
+
+
+def count_folds(points, cells):
+    a, b, c, d = (points[cells[:, k]] for k in range(4))
+    return int((numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) <= 0.0).sum())
+
+
+def check_folded_solid(program, vertices, cells):
+    """Two maps without folds, twisted against each other as far as that goes: their composition folds, and says so."""
+    def twist(angle):
+        angle = angle * (1.0 - numpy.linalg.norm(vertices, axis=1) ** 2)
+        x, y, z = vertices.T
+        return numpy.stack([numpy.cos(angle) * x - numpy.sin(angle) * y, numpy.sin(angle) * x + numpy.cos(angle) * y, z], axis=1)
+
+    most = max(angle for angle in numpy.arange(0.0, 4.0, 0.05) if count_folds(twist(angle), cells) + count_folds(twist(-angle), cells) == 0)
+    write_h5(program, "a.h5", vertices, cells, twist(most))
+    write_h5(program, "b.h5", vertices, cells, twist(-most))
+    summary, file = run(program, "a.h5", "b.h5", "-quiet", "-align", "none", codes=(5,))
+    folds = count_folds(file["/map/coordinates"][...], cells)
+    assert folds > 0 and summary["register"]["folds"] == folds and summary["folds"] == folds and "inside out" in summary["message"]
+    file.close()
 
 
 def check_refused(program):
@@ -165,6 +189,7 @@ def check_refused(program):
     program.write("far.csv", "a,b\n3,99999\n")
     program.write("words.csv", "a,b\n3,four\n")
     program.write("headless.csv", "3,4\n")
+    program.write("pair.csv", "a,b\n3,4\n")
     for code, words, *arguments in (
         (3, "do not correspond", "hills.obj", "head.obj"),
         (2, "two meshes", "hills.obj"),
@@ -174,6 +199,7 @@ def check_refused(program):
         (6, "header", "hills.obj", "hills.obj", "-landmarks", "headless.csv"),
         (6, "missing.csv", "hills.obj", "hills.obj", "-landmarks", "missing.csv"),
         (2, "-transfer nothing", "hills.obj", "hills.obj", "-transfer", "nothing"),
+        (2, "cannot draw landmarks", "hills.obj", "hills.obj", "-landmarks", "pair.csv", "-method", "lbfgs", "-max_it", 2),
         (2, "midpoints", "hills.obj", "hills.obj", "-register_by", "midpoints"),
         (2, "-frames 1", "hills.obj", "hills.obj", "-frames", 1),
         (2, "a disk has no pose", "hills.obj", "hills.obj", "-align", "pose"),
