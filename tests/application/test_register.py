@@ -150,7 +150,8 @@ def check_ball(program):
     file.close()
     turned = solid @ rotation(4).T
     write_h5(program, "b.h5", turned, cells, vertices @ rotation(3).T)
-    summary, file = run(program, "a.h5", "b.h5", "-quiet", "-frames", 3)
+    summary, file = run(program, "a.h5", "b.h5", "-quiet", "-frames", 3, "-transfer", "coordinates")
+    assert summary["register"]["transfer"]["to_b"]["coordinates"]["round_trip"] < 1e-5
     assert summary["register"]["dissimilarity_rigid"] < 1e-6 and abs(file["/map/coordinates"][...] - turned).max() < 1e-5
     assert os.path.exists(program.file("out.frame002.vtu"))
     file.close()
