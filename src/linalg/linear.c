@@ -6,6 +6,9 @@ const char *const EqmSolverKinds[] = {"auto",      "cholmod",       "substructur
 
 /* Larger fronts take half a gigabyte on one rank, and minutes that the other ranks wait. */
 enum { MOST_FRONT = 8000 };
+/* Operations of a factor per unknown, beyond which one set-up of multigrid and the solves with it cost less; scalar
+   Laplacians of solids come there at some hundred thousand vertices, those of surfaces never. */
+static const PetscReal most_flops = 8e5;
 /* Relative residual of an iteration that stands for an exact solve. */
 static const PetscReal exact = 1e-10;
 static const PetscReal gib = 1024. * 1024. * 1024.;
@@ -65,23 +68,33 @@ static PetscErrorCode FitsInMemory(EqmLinear linear, PetscReal limit, PetscBool 
   PetscFunctionReturn(0);
 }
 
+/* Would a factor cost more than multigrid? Coupled matrices, far harder for multigrid, always get one. */
+static PetscBool IsCostly(EqmLinear linear)
+{
+  return (PetscBool)(!linear->coupled && linear->estimate.flops > most_flops * (PetscReal)linear->num_unknowns);
+}
+
 /* In the plane and on surfaces an exact Cholesky factor beats multigrid at every size that fits in memory. On one rank
    CHOLMOD solves two to three times faster than MUMPS; on several it eliminates what is inside each rank, which also
    gives the same bits in every run, as long as what is left between the ranks is no burden. */
 static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal limit)
 {
-  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD, EQM_SOLVER_MULTIGRID},
-                             together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS, EQM_SOLVER_MULTIGRID};
-  const EqmSolverKind *const kinds = linear->mesh->size == 1 ? alone : together;
+  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD}, together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
+  const PetscBool is_alone = (PetscBool)(linear->mesh->size == 1);
+  const EqmSolverKind *const direct = is_alone ? alone : together;
+  const PetscInt num_direct = is_alone ? 1 : 2;
+  PetscBool costly = PETSC_FALSE;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0;; k++) {
+  for (PetscInt k = 0; k < num_direct && !costly; k++) {
     PetscBool fits;
-    PetscCall(Try(linear, ordering, kinds[k]));
+    PetscCall(Try(linear, ordering, direct[k]));
     PetscCall(FitsInMemory(linear, limit, &fits));
-    if (kinds[k] == EQM_SOLVER_MULTIGRID || (fits && linear->estimate.largest_front <= MOST_FRONT)) break;
+    costly = IsCostly(linear);
+    if (fits && !costly && linear->estimate.largest_front <= MOST_FRONT) PetscFunctionReturn(0);
     PetscCall(Release(linear));
   }
+  PetscCall(Try(linear, ordering, EQM_SOLVER_MULTIGRID));
   PetscFunctionReturn(0);
 }
 

@@ -56,7 +56,7 @@ static const StartRow starts[] = {
     {"harmonic", "boundary area-preserving on the sphere, interior harmonic", EQM_STARTS_BALL, StartInBall,
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"fixed-point", "harmonic, then fixed-point steps with the boundary held (003 section 4)", EQM_STARTS_BALL,
-     StartInBall, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 15},
+     StartInBall, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 4},
 };
 enum { NUM_STARTS = sizeof(starts) / sizeof(starts[0]) };
 
