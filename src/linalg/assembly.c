@@ -1,86 +1,102 @@
-/* Matrices from cell matrices: the pattern once, the values as often as needed, all through PETSc's coordinate format.
- */
+/* Matrices from cell matrices: the pattern once, from the graph of the vertices, the values as often as needed. */
 #include "linalg/linalg.h"
+#include "mesh/build.h"
 
 struct _p_EqmAssembly {
   EqmMesh mesh;
   EqmUnknowns unknowns;
   EqmStorage storage;
   Mat matrix;
-  PetscInt *cell_start; /* per local cell: place of its first entry among the slots */
-  PetscInt
-      *slot; /* per kept entry: place among the values of the diagonal block, or minus one minus that of the other */
+  PetscInt *place; /* per local cell and ordered pair of its corners: where in the rows of the first the unknowns of the
+                      second begin, in the diagonal block; in the other, minus two minus that; ABSENT */
 };
+enum { ABSENT = -1 };
 
-/* Does this rank keep the entry (row, column)? Rows of other ranks are theirs: their ghost layer has the same cell. */
-static inline PetscBool Keeps(const EqmUnknowns *unknowns, EqmStorage storage, PetscInt row, PetscInt column)
+/* Does this rank keep the entries of vertices v and w? Rows of other ranks are theirs: their ghost layer has the same
+   cells. */
+static inline PetscBool KeepsPair(const EqmAssembly assembly, PetscInt v, PetscInt w)
 {
-  if (row < unknowns->first || row >= unknowns->first + unknowns->num_owned) return PETSC_FALSE;
-  return (PetscBool)(storage == EQM_STORE_FULL || column <= row);
+  const EqmUnknowns *const u = &assembly->unknowns;
+
+  if (v >= assembly->mesh->num_owned || u->count[v] == 0 || u->count[w] == 0) return PETSC_FALSE;
+  return (PetscBool)(assembly->storage == EQM_STORE_FULL || u->start[w] <= u->start[v]);
 }
 
-/* Global unknowns of a cell in the order of its matrix; returns how many. */
-static inline PetscInt CellUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, PetscInt cell,
-                                    PetscInt list[EQM_MOST_CELL_UNKNOWNS])
+/* How many of w's unknowns stand in row k of v. */
+static inline PetscInt EntriesOfPair(const EqmAssembly assembly, PetscInt v, PetscInt w, PetscInt k)
 {
-  PetscInt count = 0;
-
-  for (PetscInt a = 0; a < mesh->cell_size; a++) {
-    const PetscInt v = mesh->cells[mesh->cell_size * cell + a];
-    for (PetscInt k = 0; k < unknowns->count[v]; k++) list[count++] = unknowns->start[v] + k;
-  }
-  return count;
+  return assembly->storage == EQM_STORE_LOWER && v == w ? k + 1 : assembly->unknowns.count[w];
 }
 
-/* Places of the cells' entries among the values. */
-static PetscErrorCode CountEntries(EqmAssembly assembly)
+/* Append the rows of an owned vertex: `list` is room for its neighbours and itself, `first` for as many numbers. */
+static PetscErrorCode AppendRows(const EqmAssembly assembly, const EqmGraph *graph, PetscInt v, PetscInt *list,
+                                 PetscInt *first, PetscInt *row_start, PetscInt *column)
 {
-  const EqmMesh mesh = assembly->mesh;
+  const EqmUnknowns *const u = &assembly->unknowns;
+  const PetscInt degree = graph->start[v + 1] - graph->start[v];
+  PetscInt n = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(mesh->num_local_cells + 1, &assembly->cell_start));
-  assembly->cell_start[0] = 0;
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    PetscInt list[EQM_MOST_CELL_UNKNOWNS], kept = 0;
-    const PetscInt n = CellUnknowns(mesh, &assembly->unknowns, c, list);
-    for (PetscInt i = 0; i < n; i++) {
-      for (PetscInt j = 0; j < n; j++) kept += Keeps(&assembly->unknowns, assembly->storage, list[i], list[j]);
+  for (PetscInt q = 0; q <= degree; q++) {
+    const PetscInt w = q < degree ? graph->neighbor[graph->start[v] + q] : v;
+    if (!KeepsPair(assembly, v, w)) continue;
+    list[n] = w;
+    first[n++] = u->start[w];
+  }
+  PetscCall(PetscSortIntWithArray(n, first, list));
+  for (PetscInt k = 0; k < u->count[v]; k++) {
+    const PetscInt row = u->start[v] - u->first + k;
+    PetscInt end = row_start[row];
+    for (PetscInt q = 0; q < n; q++) {
+      const PetscInt entries = EntriesOfPair(assembly, v, list[q], k);
+      for (PetscInt j = 0; j < entries; j++) column[end++] = first[q] + j;
     }
-    assembly->cell_start[c + 1] = assembly->cell_start[c] + kept;
+    row_start[row + 1] = end;
   }
   PetscFunctionReturn(0);
 }
 
-/* The pattern through the coordinate format, whose book-keeping stays behind in the copy that is thrown away. */
+/* Room for all rows: no row of a vertex is longer than its neighbours' and its own unknowns. */
+static PetscInt MostEntries(const EqmAssembly assembly, const EqmGraph *graph, PetscInt *most_neighbors)
+{
+  const EqmUnknowns *const u = &assembly->unknowns;
+  PetscInt entries = 0;
+
+  *most_neighbors = 0;
+  for (PetscInt v = 0; v < assembly->mesh->num_owned; v++) {
+    const PetscInt degree = graph->start[v + 1] - graph->start[v];
+    PetscInt columns = KeepsPair(assembly, v, v) ? u->count[v] : 0;
+    for (PetscInt q = graph->start[v]; q < graph->start[v + 1]; q++) {
+      if (KeepsPair(assembly, v, graph->neighbor[q])) columns += u->count[graph->neighbor[q]];
+    }
+    entries += columns * u->count[v];
+    *most_neighbors = PetscMax(*most_neighbors, degree + 1);
+  }
+  return entries;
+}
+
 static PetscErrorCode MakePattern(EqmAssembly assembly)
 {
   const EqmMesh mesh = assembly->mesh;
   const EqmUnknowns *const unknowns = &assembly->unknowns;
-  const PetscInt num_entries = assembly->cell_start[mesh->num_local_cells];
-  PetscInt *row, *column;
-  Mat pattern;
+  PetscInt *row_start, *column, *list, *first, most_neighbors;
+  EqmGraph graph;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(num_entries, &row, num_entries, &column));
-#pragma omp parallel for schedule(static)
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    PetscInt list[EQM_MOST_CELL_UNKNOWNS], entry = assembly->cell_start[c];
-    const PetscInt n = CellUnknowns(mesh, unknowns, c, list);
-    for (PetscInt k = 0; k < n * n; k++) {
-      if (!Keeps(unknowns, assembly->storage, list[k / n], list[k % n])) continue;
-      row[entry] = list[k / n];
-      column[entry++] = list[k % n];
-    }
-  }
-  PetscCall(MatCreate(mesh->comm, &pattern));
-  PetscCall(MatSetSizes(pattern, unknowns->num_owned, unknowns->num_owned, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(pattern, MATAIJ));
-  PetscCall(MatSetPreallocationCOO(pattern, num_entries, row, column));
-  PetscCall(PetscFree2(row, column));
-  PetscCall(MatAssemblyBegin(pattern, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(pattern, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatDuplicate(pattern, MAT_DO_NOT_COPY_VALUES, &assembly->matrix));
-  PetscCall(MatDestroy(&pattern));
+  PetscCall(EqmGraphOfCells(mesh->num_owned, mesh->cell_size, mesh->num_local_cells, mesh->cells, &graph));
+  const PetscInt most_entries = MostEntries(assembly, &graph, &most_neighbors);
+  PetscCall(PetscMalloc4(unknowns->num_owned + 1, &row_start, most_entries, &column, most_neighbors, &list,
+                         most_neighbors, &first));
+  row_start[0] = 0;
+  for (PetscInt v = 0; v < mesh->num_owned; v++)
+    PetscCall(AppendRows(assembly, &graph, v, list, first, row_start, column));
+  PetscCall(EqmGraphReset(&graph));
+  PetscCall(MatCreate(mesh->comm, &assembly->matrix));
+  PetscCall(MatSetSizes(assembly->matrix, unknowns->num_owned, unknowns->num_owned, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(assembly->matrix, MATAIJ));
+  PetscCall(MatSeqAIJSetPreallocationCSR(assembly->matrix, row_start, column, NULL));
+  PetscCall(MatMPIAIJSetPreallocationCSR(assembly->matrix, row_start, column, NULL));
+  PetscCall(PetscFree4(row_start, column, list, first));
   PetscFunctionReturn(0);
 }
 
@@ -123,40 +139,38 @@ PetscErrorCode EqmBlocksRestore(EqmBlocks *blocks)
   PetscFunctionReturn(0);
 }
 
-/* Where (row, column) is kept. */
-static PetscErrorCode FindSlot(const EqmBlocks *blocks, PetscInt first, PetscInt num_owned, PetscInt row,
-                               PetscInt column, PetscInt *slot)
+/* Where in the rows of vertex v the unknowns of w begin. */
+static PetscErrorCode FindPlace(const EqmAssembly assembly, const EqmBlocks *blocks, PetscInt v, PetscInt w,
+                                PetscInt *place)
 {
-  const int b = column >= first && column < first + num_owned ? 0 : 1;
-  PetscInt local = column - first, place;
+  const EqmUnknowns *const u = &assembly->unknowns;
+  const int b = w < assembly->mesh->num_owned ? 0 : 1;
+  const PetscInt row = u->start[v] - u->first, begin = blocks->start[b][row];
+  PetscInt column = u->start[w] - u->first;
 
   PetscFunctionBegin;
-  if (b == 1) PetscCall(PetscFindInt(column, blocks->num_global_columns, blocks->global_column, &local));
-  const PetscInt begin = blocks->start[b][row - first], length = blocks->start[b][row - first + 1] - begin;
-  PetscCall(PetscFindInt(local, length, blocks->column[b] + begin, &place));
-  PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
-             "entry (%" PetscInt_FMT ", %" PetscInt_FMT ") is missing in the pattern", row, column);
-  *slot = b == 0 ? begin + place : -1 - (begin + place);
+  if (b == 1) PetscCall(PetscFindInt(u->start[w], blocks->num_global_columns, blocks->global_column, &column));
+  PetscCall(PetscFindInt(column, blocks->start[b][row + 1] - begin, blocks->column[b] + begin, place));
+  PetscCheck(*place >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "entry (%" PetscInt_FMT ", %" PetscInt_FMT ") is missing in the pattern", u->start[v], u->start[w]);
+  if (b == 1) *place = -2 - *place;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FindSlots(EqmAssembly assembly)
+static PetscErrorCode FindPlaces(EqmAssembly assembly)
 {
   const EqmMesh mesh = assembly->mesh;
-  const EqmUnknowns *const unknowns = &assembly->unknowns;
+  const PetscInt n = mesh->cell_size;
   EqmBlocks blocks;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(assembly->cell_start[mesh->num_local_cells], &assembly->slot));
+  PetscCall(PetscMalloc1(n * n * mesh->num_local_cells, &assembly->place));
   PetscCall(EqmBlocksGet(assembly->matrix, &blocks));
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    PetscInt list[EQM_MOST_CELL_UNKNOWNS], entry = assembly->cell_start[c];
-    const PetscInt n = CellUnknowns(mesh, unknowns, c, list);
-    for (PetscInt k = 0; k < n * n; k++) {
-      if (!Keeps(unknowns, assembly->storage, list[k / n], list[k % n])) continue;
-      PetscCall(
-          FindSlot(&blocks, unknowns->first, unknowns->num_owned, list[k / n], list[k % n], &assembly->slot[entry++]));
-    }
+  for (PetscInt k = 0; k < n * n * mesh->num_local_cells; k++) {
+    const PetscInt *const corner = mesh->cells + n * (k / (n * n));
+    const PetscInt v = corner[k / n % n], w = corner[k % n];
+    assembly->place[k] = ABSENT;
+    if (KeepsPair(assembly, v, w)) PetscCall(FindPlace(assembly, &blocks, v, w, &assembly->place[k]));
   }
   PetscCall(EqmBlocksRestore(&blocks));
   PetscFunctionReturn(0);
@@ -172,9 +186,8 @@ PetscErrorCode EqmAssemblyCreate(EqmMesh mesh, const EqmUnknowns *unknowns, EqmS
   assembly->mesh = mesh;
   assembly->unknowns = *unknowns;
   assembly->storage = storage;
-  PetscCall(CountEntries(assembly));
   PetscCall(MakePattern(assembly));
-  PetscCall(FindSlots(assembly));
+  PetscCall(FindPlaces(assembly));
   *out = assembly;
   PetscFunctionReturn(0);
 }
@@ -185,8 +198,7 @@ PetscErrorCode EqmAssemblyDestroy(EqmAssembly *assembly)
   PetscFunctionBegin;
   if (!*assembly) PetscFunctionReturn(0);
   PetscCall(MatDestroy(&(*assembly)->matrix));
-  PetscCall(PetscFree((*assembly)->cell_start));
-  PetscCall(PetscFree((*assembly)->slot));
+  PetscCall(PetscFree((*assembly)->place));
   PetscCall(PetscFree(*assembly));
   PetscFunctionReturn(0);
 }
@@ -208,21 +220,23 @@ static void ClearRows(const EqmAssembly assembly, const EqmBlocks *blocks, Petsc
 static void AddCell(const EqmAssembly assembly, const EqmBlocks *blocks, PetscInt cell, const PetscReal *matrix,
                     PetscInt from, PetscInt to)
 {
-  const EqmMesh mesh = assembly->mesh;
-  PetscInt list[EQM_MOST_CELL_UNKNOWNS], entry = assembly->cell_start[cell], i = 0;
-  const PetscInt n = CellUnknowns(mesh, &assembly->unknowns, cell, list);
+  const EqmUnknowns *const u = &assembly->unknowns;
+  const PetscInt corners = assembly->mesh->cell_size, *const v = assembly->mesh->cells + corners * cell;
+  PetscInt first[5] = {0};
 
-  for (PetscInt a = 0; a < mesh->cell_size; a++) {
-    const PetscInt v = mesh->cells[mesh->cell_size * cell + a];
-    for (PetscInt k = 0; k < assembly->unknowns.count[v]; k++, i++) {
-      for (PetscInt j = 0; j < n; j++) {
-        if (!Keeps(&assembly->unknowns, assembly->storage, list[i], list[j])) continue;
-        const PetscInt slot = assembly->slot[entry++];
-        if (v < from || v >= to) continue;
-        if (slot >= 0)
-          blocks->value[0][slot] += matrix[n * i + j];
-        else
-          blocks->value[1][-1 - slot] += matrix[n * i + j];
+  for (PetscInt a = 0; a < corners; a++) first[a + 1] = first[a] + u->count[v[a]];
+  for (PetscInt a = 0; a < corners; a++) {
+    if (v[a] < from || v[a] >= to) continue;
+    for (PetscInt b = 0; b < corners; b++) {
+      const PetscInt place = assembly->place[corners * (corners * cell + a) + b];
+      const int block = place >= 0 ? 0 : 1;
+      if (place == ABSENT) continue;
+      for (PetscInt i = 0; i < u->count[v[a]]; i++) {
+        const PetscReal *const entry = matrix + first[corners] * (first[a] + i) + first[b];
+        PetscScalar *const value = blocks->value[block] + blocks->start[block][u->start[v[a]] - u->first + i] +
+                                   (block == 0 ? place : -2 - place);
+        const PetscInt entries = EntriesOfPair(assembly, v[a], v[b], i);
+        for (PetscInt j = 0; j < entries; j++) value[j] += entry[j];
       }
     }
   }
