@@ -82,12 +82,19 @@ typedef struct {
 /* Bytes that this rank may use for factors. Option: -memory_limit. Collective. */
 PETSC_INTERN PetscErrorCode EqmMemoryLimit(MPI_Comm comm, PetscReal *bytes);
 
+/* What a matrix is for, which decides between a factor and multigrid. */
+typedef enum {
+  EQM_MATRIX_SCALAR,  /* one unknown per vertex, easy for multigrid */
+  EQM_MATRIX_COUPLED, /* several, hard for multigrid: factored wherever that fits */
+  EQM_MATRIX_METRIC   /* several, only applied, where one cycle will do as well */
+} EqmMatrixUse;
+
 /* A solver for one symmetric positive definite matrix whose values change and whose pattern stays. */
 typedef struct _p_EqmLinear *EqmLinear;
 struct _p_EqmLinear {
   EqmMesh mesh;
   EqmSolverKind kind;
-  PetscBool coupled; /* counts as a coupled factorisation */
+  EqmMatrixUse use;
   PetscInt num_owned, num_unknowns;
   EqmUnknowns unknowns;
   EqmUnknowns rows; /* of the matrix: the unknowns, unless the kind wants others */
@@ -112,7 +119,7 @@ PETSC_INTERN PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsOb
 /* Hand what was asked for on to a run inside this one, which has options of its own. */
 PETSC_INTERN PetscErrorCode EqmLinearPassOptions(PetscOptions options);
 PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
-                                            PetscBool coupled, EqmLinear *linear);
+                                            EqmMatrixUse use, EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearEstimate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
                                               EqmEstimate *estimate, PetscBool *fits);
 PETSC_INTERN PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length);

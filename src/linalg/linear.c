@@ -9,6 +9,8 @@ enum { MOST_FRONT = 8000 };
 /* Operations of a factor per unknown, beyond which one set-up of multigrid and the solves with it cost less; scalar
    Laplacians of solids come there at some hundred thousand vertices, those of surfaces never. */
 static const PetscReal most_flops = 8e5;
+/* The metrics of solids come there far earlier: not even an analysis would pay. */
+enum { MOST_IN_METRIC = 60000 };
 /* Relative residual of an iteration that stands for an exact solve. */
 static const PetscReal exact = 1e-10;
 static const PetscReal gib = 1024. * 1024. * 1024.;
@@ -68,10 +70,12 @@ static PetscErrorCode FitsInMemory(EqmLinear linear, PetscReal limit, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* Would a factor cost more than multigrid? Coupled matrices, far harder for multigrid, always get one. */
+/* Would a factor, as far as it is known, cost more than multigrid? */
 static PetscBool IsCostly(EqmLinear linear)
 {
-  return (PetscBool)(!linear->coupled && linear->estimate.flops > most_flops * (PetscReal)linear->num_unknowns);
+  if (linear->use == EQM_MATRIX_METRIC) return (PetscBool)(linear->num_unknowns > MOST_IN_METRIC);
+  return (PetscBool)(linear->use == EQM_MATRIX_SCALAR &&
+                     linear->estimate.flops > most_flops * (PetscReal)linear->num_unknowns);
 }
 
 /* In the plane and on surfaces an exact Cholesky factor beats multigrid at every size that fits in memory. On one rank
@@ -83,7 +87,7 @@ static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal l
   const PetscBool is_alone = (PetscBool)(linear->mesh->size == 1);
   const EqmSolverKind *const direct = is_alone ? alone : together;
   const PetscInt num_direct = is_alone ? 1 : 2;
-  PetscBool costly = PETSC_FALSE;
+  PetscBool costly = IsCostly(linear);
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < num_direct && !costly; k++) {
@@ -120,12 +124,12 @@ static PetscErrorCode Obey(EqmLinear linear, EqmOrdering ordering, EqmSolverKind
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, PetscBool coupled, EqmLinear *linear)
+static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use, EqmLinear *linear)
 {
   PetscFunctionBegin;
   PetscCall(PetscNew(linear));
   (*linear)->mesh = mesh;
-  (*linear)->coupled = coupled;
+  (*linear)->use = use;
   (*linear)->unknowns = *unknowns;
   (*linear)->num_owned = unknowns->num_owned;
   (*linear)->tolerance = exact;
@@ -135,7 +139,7 @@ static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, PetscBool
 
 /* A solver for matrices with the given unknowns (whose arrays must outlive it). Options: -linear_solver, -memory_limit.
    Errors: EQM_ERR_USAGE if the solver asked for does not fit. Collective. */
-PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled,
+PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, EqmMatrixUse use,
                                EqmLinear *out)
 {
   PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
@@ -144,7 +148,7 @@ PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnkn
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetEnum(NULL, NULL, "-linear_solver", EqmSolverKinds, &kind, NULL));
   PetscCall(EqmMemoryLimit(mesh->comm, &limit));
-  PetscCall(Begin(mesh, unknowns, coupled, out));
+  PetscCall(Begin(mesh, unknowns, use, out));
   if ((EqmSolverKind)kind == EQM_SOLVER_AUTO)
     PetscCall(Choose(*out, ordering, limit));
   else
@@ -161,7 +165,7 @@ PetscErrorCode EqmLinearEstimate(EqmMesh mesh, EqmOrdering ordering, const EqmUn
 
   PetscFunctionBegin;
   PetscCall(EqmMemoryLimit(mesh->comm, &limit));
-  PetscCall(Begin(mesh, unknowns, PETSC_TRUE, &linear));
+  PetscCall(Begin(mesh, unknowns, EQM_MATRIX_COUPLED, &linear));
   PetscCall(Try(linear, ordering, mesh->size == 1 ? EQM_SOLVER_CHOLMOD : EQM_SOLVER_SUBSTRUCTURE));
   if (linear->estimate.largest_front > MOST_FRONT) {
     PetscCall(Release(linear));
@@ -251,7 +255,7 @@ PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
   work->factorizations++;
-  if (linear->coupled) work->coupled_factorizations++;
+  if (linear->use != EQM_MATRIX_SCALAR) work->coupled_factorizations++;
   PetscFunctionReturn(0);
 }
 

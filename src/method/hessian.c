@@ -179,7 +179,7 @@ static PetscErrorCode Eigenvalues(Hessian *h, PetscInt num_dofs, PetscInt wanted
     PetscCall(VecDuplicate(h->column[k], &h->solved[k]));
   }
   PetscCall(Prepare(h));
-  PetscCall(EqmLinearCreate(mesh, h->solver->ordering, &unknowns, PETSC_TRUE, &h->linear));
+  PetscCall(EqmLinearCreate(mesh, h->solver->ordering, &unknowns, EQM_MATRIX_COUPLED, &h->linear));
   PetscCall(EqmLinearFactor(h->linear, CellMatrix, h, 1., &success));
   PetscCheck(success, mesh->comm, PETSC_ERR_NOT_CONVERGED,
              "the Hessian is too near to singular for its eigenvalues to be computed");

@@ -126,7 +126,6 @@ static PetscErrorCode SetUp(EqmSolver solver)
 {
   const EqmMesh mesh = solver->mesh;
   const EqmDomain domain = solver->domain;
-  const EqmUnknowns unknowns = EqmDomainUnknowns(domain);
   const PetscInt dim = domain->dim;
   EqmLm *lm;
 
@@ -136,11 +135,8 @@ static PetscErrorCode SetUp(EqmSolver solver)
   lm->mu = 1.;
   lm->epsilon = PetscMax(solver->settings.balance, 0.);
   lm->angle_weight = lm->epsilon / domain->target_measure;
-  PetscCall(EqmLinearDestroy(&solver->scalar)); /* the start's: a quarter of the memory, and of no more use */
-  PetscCall(PetscFree(solver->scalar_count));
-  PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, PETSC_TRUE, &lm->linear));
+  PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_COUPLED, &lm->linear));
   PetscCall(EqmLinearSetInexact(lm->linear, inexact));
-  PetscCall(EqmLinearDescribe(lm->linear, solver->linear_solver, sizeof(solver->linear_solver)));
   PetscCall(TrialCreate(solver, &lm->now));
   PetscCall(TrialCreate(solver, &lm->best));
   PetscCall(TrialCreate(solver, &lm->attempt));

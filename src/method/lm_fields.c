@@ -32,29 +32,10 @@ static void SphereField(PetscInt which, const PetscReal *x, PetscReal *field)
 PetscErrorCode EqmLmSetFields(EqmSolver solver)
 {
   EqmLm *const lm = solver->data;
-  const EqmDomain domain = solver->domain;
-  const PetscBool sphere = domain->curved_image;
-  const PetscInt dim = domain->dim, count = sphere ? SPHERE_FIELDS : PLANAR_FIELDS;
-  PetscReal *fields;
+  const PetscBool sphere = solver->domain->curved_image;
 
   PetscFunctionBegin;
-  if (!lm->linear->set_fields) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(count * domain->num_dofs, &fields));
-  for (PetscInt k = 0; k < count; k++) {
-    const PetscScalar *dofs;
-    for (PetscInt v = 0; v < solver->mesh->num_owned; v++) {
-      const PetscReal *const x = lm->now.place.x + dim * v;
-      if (sphere)
-        SphereField(k, x, lm->ambient + dim * v);
-      else
-        PlanarField(k, x, lm->ambient + dim * v);
-    }
-    PetscCall(EqmDomainProject(domain, &lm->now.place, lm->ambient, lm->direction));
-    PetscCall(VecGetArrayRead(lm->direction, &dofs));
-    PetscCall(PetscArraycpy(fields + k * domain->num_dofs, dofs, domain->num_dofs));
-    PetscCall(VecRestoreArrayRead(lm->direction, &dofs));
-  }
-  PetscCall(EqmLinearSetFields(lm->linear, count, fields));
-  PetscCall(PetscFree(fields));
+  PetscCall(EqmSolverSetFields(solver, &lm->now.place, lm->linear, sphere ? SPHERE_FIELDS : PLANAR_FIELDS,
+                               sphere ? SphereField : PlanarField));
   PetscFunctionReturn(0);
 }

@@ -113,6 +113,11 @@ static inline EqmUnknowns EqmDomainUnknowns(EqmDomain domain)
                        .count = domain->dof_count};
 }
 
+PETSC_INTERN PetscErrorCode EqmSolverCreateLinear(EqmSolver solver, EqmMatrixUse use, EqmLinear *linear);
+PETSC_INTERN PetscErrorCode EqmSolverSetFields(EqmSolver solver, const EqmPlace *place, EqmLinear linear,
+                                               PetscInt count,
+                                               void (*field)(PetscInt which, const PetscReal *x, PetscReal *velocity));
+
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,
     EqmMethodRiemann, EqmMethodCovering, EqmMethodQiem, EqmMethodEulerExplicit, EqmMethodEulerImplicit, EqmMethodNewton;
 typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
@@ -143,9 +148,6 @@ enum { EQM_GROUP_FIXED = -1 };
    cell or NULL goes to the diagonal. Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group,
                                            const PetscReal *mass);
-/* The same with the diagonal multiplied. Collective. */
-PETSC_INTERN PetscErrorCode EqmGroupFactorScaled(EqmSolver solver, const PetscReal *weights, const signed char *group,
-                                                 const PetscReal *mass, PetscReal diagonal_factor);
 /* Solve with the factored Laplacian; columns of num_owned each. Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmSolver solver, PetscInt num_rhs, PetscReal *columns);
 /* The same as a metric needs it: the factor, or one multigrid cycle (EqmLinearApply). Collective. */

@@ -1,20 +1,18 @@
 /* A Laplacian, of most objectives the stretch Laplacian, as a metric for gradients. In the plane M = blkdiag(L_II,
    L_BB) (000 section 3.2), degree of freedom by degree of freedom, angles and slides with the first coordinate. On the
    sphere the gradient is a field in space: each coordinate is solved with the Laplacian and a mass, and the result
-   projected back (docs/methods.md, Published methods). In the ball L_V alone does not see what the
-   energy's Hessian does to single cells: half of the metric's inverse is an incomplete factor of the Gauss-Newton
-   matrix (docs/methods.md, Solids). */
+   projected back (docs/methods.md, Published methods). In the ball no Laplacian knows that the energy is stiff for
+   compression and soft for everything else: there the metric is the Gauss-Newton matrix with a little of L_V, coupled
+   over all coordinates (docs/methods.md, Solids). */
 #include "method/method.h"
 #include "energy/kernel.h"
-#include "linalg/blockfactor.h"
 #include "unfold/barrier.h"
 
 struct _p_EqmMetric {
   PetscReal *weights, *mass, *columns, *ambient;
   signed char *group;
-  EqmPlace at;                 /* the map that the present factor belongs to */
-  EqmBlockFactor gauss_newton; /* in the ball, with vertices in frames; else NULL */
-  Vec smoothed;
+  EqmPlace at;            /* the map that the present factor belongs to */
+  EqmLinear gauss_newton; /* in the ball, with vertices in frames; else NULL */
 };
 
 /* A vertex in spherical coordinates has no frame that a factor could turn with. */
@@ -38,12 +36,8 @@ PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
     metric->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
   }
   PetscCall(EqmPlaceCreate(solver->domain, &metric->at));
-  if (NeedsGaussNewton(solver->domain)) {
-    const EqmUnknowns unknowns = EqmDomainUnknowns(solver->domain);
-    PetscCall(EqmBlockFactorCreate(mesh, &unknowns, &metric->gauss_newton));
-    PetscCall(EqmDomainCreateVec(solver->domain, &metric->smoothed));
-    PetscCall(PetscArrayzero(metric->group, mesh->num_local)); /* boundary and interior together */
-  }
+  if (NeedsGaussNewton(solver->domain))
+    PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_METRIC, &metric->gauss_newton));
   *out = metric;
   PetscFunctionReturn(0);
 }
@@ -54,8 +48,7 @@ PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
   if (!*metric) PetscFunctionReturn(0);
   PetscCall(EqmPlaceDestroy(&(*metric)->at));
   PetscCall(PetscFree5((*metric)->weights, (*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
-  PetscCall(EqmBlockFactorDestroy(&(*metric)->gauss_newton));
-  PetscCall(VecDestroy(&(*metric)->smoothed));
+  PetscCall(EqmLinearDestroy(&(*metric)->gauss_newton));
   PetscCall(PetscFree(*metric));
   PetscFunctionReturn(0);
 }
@@ -65,7 +58,10 @@ typedef struct {
   const PetscReal *weights; /* of L_V */
 } GaussNewton;
 
-/* Half of the energy's Hessian times A without the curvature of the cells, da da^T / w, and a twentieth of L_V in each
+/* Of L_V in the metric of the ball. */
+static const PetscReal l_v_share = .05;
+
+/* Half of the energy's Hessian times A without the curvature of the cells, da da^T / w, and a share of L_V in each
    coordinate, which keeps it definite. */
 static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
 {
@@ -91,10 +87,29 @@ static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
     for (PetscInt j = 0; j < n; j++) {
       const PetscInt a = corner[i], b = corner[j];
       matrix[n * i + j] = rate[i] * rate[j] / weight +
-                          .05 * laplacian[a][b] * EqmDot3(frame[a] + 3 * number[i], frame[b] + 3 * number[j]);
+                          l_v_share * laplacian[a][b] * EqmDot3(frame[a] + 3 * number[i], frame[b] + 3 * number[j]);
     }
   }
   if (gn->solver->barrier) EqmBarrierAddMatrix(gn->solver, cell, matrix);
+}
+
+/* Without compression, and the smoothest that there are. Rotations cost a third more per cycle and save less. */
+static void Translation(PetscInt which, const PetscReal *x, PetscReal *velocity)
+{
+  (void)x;
+  for (PetscInt k = 0; k < 3; k++) velocity[k] = k == which ? 1. : 0.;
+}
+
+static PetscErrorCode FactorGaussNewton(EqmSolver solver, EqmMetric metric)
+{
+  GaussNewton gn = {solver, metric->weights};
+  PetscBool success;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverSetFields(solver, &solver->place, metric->gauss_newton, 3, Translation));
+  PetscCall(EqmLinearFactor(metric->gauss_newton, CellGaussNewton, &gn, 1., &success));
+  PetscCheck(success, solver->comm, PETSC_ERR_MAT_CH_ZRPVT, "no factor of the metric: the map is not finite");
+  PetscFunctionReturn(0);
 }
 
 /* Factor what belongs to the present map. */
@@ -106,12 +121,10 @@ static PetscErrorCode Factor(EqmSolver solver, EqmMetric metric)
   PetscFunctionBegin;
   if (fixed && solver->holds_fixed_metric) PetscFunctionReturn(0);
   PetscCall(solver->problem->objective->metric(solver, metric->weights, metric->mass, &with_mass));
-  if (metric->gauss_newton) {
-    GaussNewton gn = {solver, metric->weights};
-    PetscCall(EqmBlockFactorCompute(metric->gauss_newton, CellGaussNewton, &gn));
-  }
-  PetscCall(EqmGroupFactorScaled(solver, metric->weights, metric->group, with_mass ? metric->mass : NULL,
-                                 metric->gauss_newton ? 1.01 : 1.));
+  if (metric->gauss_newton)
+    PetscCall(FactorGaussNewton(solver, metric));
+  else
+    PetscCall(EqmGroupFactor(solver, metric->weights, metric->group, with_mass ? metric->mass : NULL));
   solver->holds_fixed_metric = fixed;
   PetscFunctionReturn(0);
 }
@@ -177,21 +190,16 @@ static PetscErrorCode ApplyByDof(EqmSolver solver, EqmMetric metric, Vec g, Vec 
   PetscFunctionReturn(0);
 }
 
-/* h = 1/2 P1 g + 1/3 P2 g: P1 the incomplete factor, P2 L_V with its diagonal raised, both for A/2 times the Hessian.
- */
-static PetscErrorCode ApplyCombined(EqmSolver solver, EqmMetric metric, Vec g, Vec h)
+/* All at once: the matrix belongs to A/2 times the Hessian. */
+static PetscErrorCode ApplyCoupled(EqmMetric metric, Vec g, Vec h)
 {
-  const PetscScalar *from;
-  PetscScalar *to;
+  PetscScalar *array;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(g, &from));
-  PetscCall(VecGetArrayWrite(metric->smoothed, &to));
-  PetscCall(EqmBlockFactorSolve(metric->gauss_newton, from, to));
-  PetscCall(VecRestoreArrayWrite(metric->smoothed, &to));
-  PetscCall(VecRestoreArrayRead(g, &from));
-  PetscCall(ApplyInSpace(solver, metric, g, h));
-  PetscCall(VecAXPBY(h, .5, 1. / 3., metric->smoothed));
+  if (g != h) PetscCall(VecCopy(g, h));
+  PetscCall(VecGetArray(h, &array));
+  PetscCall(EqmLinearApply(metric->gauss_newton, 1, array, array));
+  PetscCall(VecRestoreArray(h, &array));
   PetscFunctionReturn(0);
 }
 
@@ -199,7 +207,7 @@ PetscErrorCode EqmMetricApply(EqmSolver solver, EqmMetric metric, Vec g, Vec h)
 {
   PetscFunctionBegin;
   if (metric->gauss_newton)
-    PetscCall(ApplyCombined(solver, metric, g, h));
+    PetscCall(ApplyCoupled(metric, g, h));
   else if (solver->domain->curved_image)
     PetscCall(ApplyInSpace(solver, metric, g, h));
   else

@@ -21,16 +21,13 @@ static PetscErrorCode SetUp(EqmSolver solver)
 {
   const EqmMesh mesh = solver->mesh;
   const EqmDomain domain = solver->domain;
-  const EqmUnknowns unknowns = EqmDomainUnknowns(domain);
   Newton *newton;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&newton));
   solver->data = newton;
   newton->mu = 1e-2;
-  PetscCall(EqmLinearDestroy(&solver->scalar)); /* the start's, of no more use */
-  PetscCall(PetscFree(solver->scalar_count));
-  PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, PETSC_TRUE, &newton->linear));
+  PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_COUPLED, &newton->linear));
   PetscCall(PetscMalloc4(mesh->num_local_cells, &newton->slope, EqmCellEdges(mesh->cell_size) * mesh->num_local_cells,
                          &newton->weights, mesh->num_local_cells, &newton->image, domain->dim * mesh->num_local,
                          &newton->velocity));

@@ -40,13 +40,13 @@ static PetscErrorCode MakeScalar(EqmSolver solver)
   PetscCall(PetscMalloc1(mesh->num_local, &solver->scalar_count));
   for (PetscInt v = 0; v < mesh->num_local; v++) solver->scalar_count[v] = 1;
   unknowns.count = solver->scalar_count;
-  PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, PETSC_FALSE, &solver->scalar));
+  PetscCall(EqmLinearCreate(mesh, solver->ordering, &unknowns, EQM_MATRIX_SCALAR, &solver->scalar));
   PetscCall(EqmLinearDescribe(solver->scalar, solver->linear_solver, sizeof(solver->linear_solver)));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmGroupFactorScaled(EqmSolver solver, const PetscReal *weights, const signed char *group,
-                                    const PetscReal *mass, PetscReal diagonal_factor)
+PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                              const PetscReal *mass)
 {
   GroupMatrix matrix = {solver->mesh, weights, group, mass};
   PetscBool success;
@@ -54,20 +54,12 @@ PetscErrorCode EqmGroupFactorScaled(EqmSolver solver, const PetscReal *weights, 
   PetscFunctionBegin;
   PetscCall(MakeScalar(solver));
   solver->holds_fixed_metric = PETSC_FALSE;
-  PetscCall(EqmLinearFactor(solver->scalar, CellLaplacian, &matrix, diagonal_factor, &success));
+  PetscCall(EqmLinearFactor(solver->scalar, CellLaplacian, &matrix, 1., &success));
   if (!success) {
     EqmFail(solver->comm, EQM_ERR_MESH,
             "a Laplacian of this mesh is not positive definite (very obtuse or degenerate cells); remesh, or start "
             "with -start tutte");
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmGroupFactor(EqmSolver solver, const PetscReal *weights, const signed char *group,
-                              const PetscReal *mass)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmGroupFactorScaled(solver, weights, group, mass, 1.));
   PetscFunctionReturn(0);
 }
 

@@ -173,7 +173,7 @@ static PetscErrorCode CheckIndefiniteMultigrid(EqmLinear linear, Model *model)
 }
 
 /* One kind of solver on one set of unknowns. */
-static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, PetscBool coupled,
+static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, EqmMatrixUse use,
                                  const char *option)
 {
   Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5};
@@ -183,7 +183,7 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
 
   PetscFunctionBegin;
   PetscCall(TestOptionsBegin(option, &options));
-  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, coupled, &linear));
+  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, use, &linear));
   const PetscBool direct = (PetscBool)(linear->kind != EQM_SOLVER_MULTIGRID);
   const PetscReal tolerance = direct ? 1e-12 : 1e-9;
   PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
@@ -196,7 +196,7 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   CHECK(work->factorizations - before.factorizations == 4 && work->solves - before.solves == 10,
         "%d factorisations, %d solves", (int)(work->factorizations - before.factorizations),
         (int)(work->solves - before.solves));
-  CHECK(work->coupled_factorizations - before.coupled_factorizations == (coupled ? 4 : 0), "%d coupled",
+  CHECK(work->coupled_factorizations - before.coupled_factorizations == (use == EQM_MATRIX_SCALAR ? 0 : 4), "%d coupled",
         (int)(work->coupled_factorizations - before.coupled_factorizations));
   PetscCall(CheckApply(linear, &model));
   if (direct)
@@ -216,7 +216,7 @@ static PetscErrorCode TestCholmodOnSeveralRanks(EqmMesh mesh, EqmOrdering orderi
 
   PetscFunctionBegin;
   PetscCall(TestOptionsBegin("-linear_solver cholmod", &options));
-  CHECK_FAILS(EQM_ERR_USAGE, EqmLinearCreate(mesh, ordering, unknowns, PETSC_FALSE, &linear));
+  CHECK_FAILS(EQM_ERR_USAGE, EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_SCALAR, &linear));
   PetscCall(TestOptionsEnd(&options));
   PetscFunctionReturn(0);
 }
@@ -244,27 +244,27 @@ static PetscErrorCode TestMemory(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   PetscCall(TestOptionsBegin("-memory_limit 1e-6", &options));
   PetscCall(EqmLinearEstimate(mesh, ordering, unknowns, &estimate, &fits));
   CHECK(!fits, "%g bytes fit in a thousand", (double)estimate.most_bytes_on_rank);
-  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, PETSC_FALSE, &linear));
+  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_SCALAR, &linear));
   CHECK(linear->kind == EQM_SOLVER_MULTIGRID, "%s in a thousand bytes", EqmSolverKinds[linear->kind]);
   PetscCall(EqmLinearDestroy(&linear));
   PetscCall(PetscOptionsInsertString(options, "-linear_solver mumps"));
-  CHECK_FAILS(EQM_ERR_USAGE, EqmLinearCreate(mesh, ordering, unknowns, PETSC_FALSE, &linear));
+  CHECK_FAILS(EQM_ERR_USAGE, EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_SCALAR, &linear));
   PetscCall(TestOptionsEnd(&options));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, PetscBool coupled)
+static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use)
 {
   EqmOrdering ordering;
 
   PetscFunctionBegin;
   PetscCall(EqmOrderingCreate(mesh, &ordering));
-  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver auto"));
-  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver substructure"));
-  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver mumps"));
-  PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver multigrid"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver auto"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver substructure"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver mumps"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver multigrid"));
   if (mesh->size == 1)
-    PetscCall(TestSolver(mesh, ordering, unknowns, coupled, "-linear_solver cholmod"));
+    PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver cholmod"));
   else
     PetscCall(TestCholmodOnSeveralRanks(mesh, ordering, unknowns));
   PetscCall(TestMemory(mesh, ordering, unknowns));
@@ -290,13 +290,13 @@ static PetscErrorCode TestOnMesh(const char *shape, PetscInt n, const char *part
                               .first = test.mesh->vertex_start,
                               .start = test.mesh->global,
                               .count = ones};
-  PetscCall(TestUnknowns(test.mesh, &scalar, PETSC_FALSE));
+  PetscCall(TestUnknowns(test.mesh, &scalar, EQM_MATRIX_SCALAR));
   PetscCall(EqmDomainCreateSquare(test.mesh, NULL, &domain));
   const EqmUnknowns coupled = {.num_owned = domain->num_dofs,
                                .first = domain->dof_first,
                                .start = domain->dof_start,
                                .count = domain->dof_count};
-  PetscCall(TestUnknowns(test.mesh, &coupled, PETSC_TRUE));
+  PetscCall(TestUnknowns(test.mesh, &coupled, EQM_MATRIX_COUPLED));
   PetscCall(EqmDomainDestroy(&domain));
   PetscCall(PetscFree(ones));
   PetscCall(TestMeshDestroy(&test));
