@@ -218,11 +218,12 @@ static PetscErrorCode Destroy(EqmLinear linear)
 }
 
 /* Smoothers are symmetric Gauss-Seidel sweeps, which are safe for every definite matrix; Chebyshev's are not where the
-   estimate of the spectrum fails. The shift, far below every entry, is for coarse rows of aggregates that are too small
-   for all the fields. The options database may say otherwise. */
+   estimate of the spectrum fails. A second sweep costs more than it saves. The shift, far below every entry, is for
+   coarse rows of aggregates that are too small for all the fields. The options database may say otherwise. */
 static PetscErrorCode SetSmootherOptions(void)
 {
   static const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "richardson"},
+                                            {"-multigrid_mg_levels_ksp_max_it", "1"},
                                             {"-multigrid_mg_levels_pc_type", "sor"},
                                             {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"}};
 

@@ -100,15 +100,22 @@ static PetscErrorCode TryStep(void *context, PetscReal t, PetscReal *value, Pets
   PetscFunctionReturn(0);
 }
 
+/* The map changes less and less: a metric serves until three times the iteration of the one before. */
+static PetscBool IsRefreshDue(PetscInt first, PetscInt iteration)
+{
+  PetscInt due = first;
+
+  while (due > 0 && due < iteration) due *= 3;
+  return (PetscBool)(due > 0 && due == iteration);
+}
+
 static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
 {
   Lbfgs *const lb = solver->data;
-  const PetscInt refresh = solver->settings.lbfgs_refresh;
   PetscReal slope, t, energy;
 
   PetscFunctionBegin;
-  if (refresh > 0 && !solver->problem->objective->fixed_metric && solver->iteration > 0 &&
-      solver->iteration % refresh == 0)
+  if (!solver->problem->objective->fixed_metric && IsRefreshDue(solver->settings.lbfgs_refresh, solver->iteration))
     PetscCall(EqmMetricRefresh(solver, lb->metric));
   PetscCall(VecCopy(lb->gradient, lb->direction));
   PetscCall(EqmPairsDirection(lb->pairs, ApplyMetric, solver, lb->direction));
@@ -144,8 +151,10 @@ static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsOb
   EqmSettings *const set = &solver->settings;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsBoundedInt("-lbfgs_refresh", "lbfgs: renew the metric every so many iterations; 0: never",
-                                   "EqmSolverSetFromOptions", set->lbfgs_refresh, &set->lbfgs_refresh, NULL, 0));
+  PetscCall(PetscOptionsBoundedInt(
+      "-lbfgs_refresh",
+      "lbfgs: renew the metric after so many iterations, then at every threefold number of iterations; 0: never",
+      "EqmSolverSetFromOptions", set->lbfgs_refresh, &set->lbfgs_refresh, NULL, 0));
   PetscCall(PetscOptionsBoundedInt("-lbfgs_memory", "lbfgs: how many steps are remembered", "EqmSolverSetFromOptions",
                                    set->lbfgs_memory, &set->lbfgs_memory, NULL, 1));
   PetscCall(PetscOptionsEnum("-lbfgs_line_search", "lbfgs: when a step is long enough", "EqmSolverSetFromOptions",

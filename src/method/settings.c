@@ -18,7 +18,7 @@ PetscErrorCode EqmSettingsDefault(EqmSettings *settings)
                             .ncg_guard = PETSC_TRUE,
                             .anisotropic_scaling = PETSC_TRUE,
                             .boundary_max_it = -1,
-                            .lbfgs_refresh = 25,
+                            .lbfgs_refresh = 10,
                             .lbfgs_memory = 10,
                             .flow_tol = 1e-9,
                             .qiem_phase1 = "abc",
