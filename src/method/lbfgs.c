@@ -100,12 +100,12 @@ static PetscErrorCode TryStep(void *context, PetscReal t, PetscReal *value, Pets
   PetscFunctionReturn(0);
 }
 
-/* The map changes less and less: a metric serves until three times the iteration of the one before. */
+/* The map changes less and less: a metric serves twice as long as the one before. */
 static PetscBool IsRefreshDue(PetscInt first, PetscInt iteration)
 {
   PetscInt due = first;
 
-  while (due > 0 && due < iteration) due *= 3;
+  while (due > 0 && due < iteration) due *= 2;
   return (PetscBool)(due > 0 && due == iteration);
 }
 
@@ -153,7 +153,7 @@ static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsOb
   PetscFunctionBegin;
   PetscCall(PetscOptionsBoundedInt(
       "-lbfgs_refresh",
-      "lbfgs: renew the metric after so many iterations, then at every threefold number of iterations; 0: never",
+      "lbfgs: renew the metric after so many iterations, then each time after twice as many; 0: never",
       "EqmSolverSetFromOptions", set->lbfgs_refresh, &set->lbfgs_refresh, NULL, 0));
   PetscCall(PetscOptionsBoundedInt("-lbfgs_memory", "lbfgs: how many steps are remembered", "EqmSolverSetFromOptions",
                                    set->lbfgs_memory, &set->lbfgs_memory, NULL, 1));

@@ -31,7 +31,6 @@ static PetscErrorCode StretchMetric(EqmSolver solver, PetscReal *weights, PetscR
 {
   PetscFunctionBegin;
   PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
-  if (solver->barrier) EqmBarrierAddLaplacian(solver, weights);
   *with_mass = solver->domain->curved_image;
   if (*with_mass) {
     PetscCall(EqmImageMeasure(solver->domain, &solver->place, mass));

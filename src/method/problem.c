@@ -48,14 +48,6 @@ static PetscErrorCode IsClosed(EqmMesh mesh, PetscBool *closed)
   PetscFunctionReturn(0);
 }
 
-/* Up to so many vertices a factor of the exact Hessian costs less than the iterations that it saves. */
-static const EqmMethod *PreferInBall(EqmMesh mesh)
-{
-  const PetscInt most_vertices = 20000;
-
-  return mesh->num_vertices <= most_vertices ? &EqmMethodNewton : &EqmMethodLbfgs;
-}
-
 /* ---- methods: name, first map, -max_it, -energy_rtol, -ratio_tol, -gradient_tol */
 static const EqmOffer in_plane[] = {
     {&EqmMethodLm, "guarded", 60, .05, 1e-4, 0.},      {&EqmMethodFixedPoint, "harmonic", 100, 1e-4, 0., 0.},
@@ -82,8 +74,8 @@ static const EqmOffer conformal_on_sphere[] = {
 };
 
 static const EqmOffer in_ball[] = {
+    {&EqmMethodLbfgs, "fixed-point", 500, 1e-8, 0., 0.},
     {&EqmMethodNewton, "fixed-point", 300, 1e-9, 0., 0.},
-    {&EqmMethodLbfgs, "fixed-point", 500, 1e-5, 0., 0.},
     {&EqmMethodFixedPoint, "harmonic", 500, 1e-6, 0., 0.},
     {&EqmMethodNcg, "fixed-point", 500, 1e-6, 0., 0.},
 };
@@ -138,7 +130,6 @@ static const EqmProblem problems[] = {
      .objective = &EqmObjectiveAuthalic,
      .unfold = EqmBallUnfold,
      .starts = EQM_STARTS_BALL,
-     .prefers = PreferInBall,
      OFFERS(in_ball)},
 };
 enum { NUM_PROBLEMS = sizeof(problems) / sizeof(problems[0]) };
@@ -165,18 +156,14 @@ PetscBool EqmProblemIsSettled(const char *target)
   return (PetscBool)(rows == 1);
 }
 
-PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, EqmMesh mesh, const char *method,
-                                   const EqmOffer **offer)
+PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, const char *method, const EqmOffer **offer)
 {
-  const char *name = method;
   char names[EQM_MESSAGE_MAX];
 
   PetscFunctionBegin;
-  if (!strcmp(method, "auto"))
-    name = (mesh && problem->prefers ? problem->prefers(mesh) : problem->offers[0].method)->name;
-  *offer = NULL;
+  *offer = strcmp(method, "auto") ? NULL : &problem->offers[0];
   for (PetscInt k = 0; k < problem->num_offers && !*offer; k++) {
-    if (!strcmp(problem->offers[k].method->name, name)) *offer = &problem->offers[k];
+    if (!strcmp(problem->offers[k].method->name, method)) *offer = &problem->offers[k];
   }
   if (*offer) PetscFunctionReturn(0);
   PetscCall(EqmProblemMethodNames(problem->target, names, sizeof(names)));

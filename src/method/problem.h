@@ -28,19 +28,17 @@ typedef struct {
   PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
   EqmStartFamily starts;
   PetscBool takes_balance; /* -balance has a meaning */
-  const EqmOffer *offers;
+  const EqmOffer *offers;  /* the first is -method auto */
   PetscInt num_offers;
-  const EqmMethod *(*prefers)(EqmMesh); /* what -method auto is for the mesh, one of the offers; NULL: the first */
 } EqmProblem;
 
 /* The problem of a target for a mesh. Without a mesh (NULL) the target's first. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemFind(MPI_Comm comm, const char *target, EqmMesh mesh, const EqmProblem **problem);
 /* Does the target have one row only, so that its problem is known before the mesh is? Not collective. */
 PETSC_INTERN PetscBool EqmProblemIsSettled(const char *target);
-/* The offer of a method's name; "auto" is the one that suits the mesh, without a mesh (NULL) the first. Errors:
-   EQM_ERR_USAGE. Collective. */
-PETSC_INTERN PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, EqmMesh mesh,
-                                                const char *method, const EqmOffer **offer);
+/* The offer of a method's name; "auto" is the first. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmProblemFindOffer(MPI_Comm comm, const EqmProblem *problem, const char *method,
+                                                const EqmOffer **offer);
 /* Names of the methods for a target, of all its rows, separated by commas. Not collective. */
 PETSC_INTERN PetscErrorCode EqmProblemMethodNames(const char *target, char *text, size_t length);
 /* Ask the options database for what the target's rows and their methods have of their own. Collective. */

@@ -140,7 +140,7 @@ PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver)
   if (!solver->mesh && !EqmProblemIsSettled(solver->target)) PetscFunctionReturn(0); /* the mesh will tell */
   if (set->balance > 0. && !solver->problem->takes_balance)
     EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for the %s", solver->problem->place);
-  PetscCall(EqmProblemFindOffer(solver->comm, solver->problem, solver->mesh, set->method, &offer));
+  PetscCall(EqmProblemFindOffer(solver->comm, solver->problem, set->method, &offer));
   PetscCall(TakeOffer(solver, offer));
   PetscCall(EqmStartFind(solver->problem, set->start));
   PetscFunctionReturn(0);

@@ -99,7 +99,7 @@ static PetscErrorCode MapSurface(EqmSolver solver, EqmMesh surface, EqmSolver *s
   PetscFunctionBegin;
   if (max_it < 0) {
     max_it = by_fixed_point ? 10 : 60;
-    enough = by_fixed_point ? "" : " -ratio_tol .1"; /* a longer run would magnify the last digits of the input */
+    enough = by_fixed_point ? "" : " -ratio_tol .01"; /* a longer run would magnify the last digits of the input */
   }
   PetscCall(PetscSNPrintf(text, sizeof(text), "-quiet -max_it %" PetscInt_FMT "%s%s%s%s%s", max_it, enough,
                           method[0] ? " -method " : "", method, set->boundary_start[0] ? " -start " : "",

@@ -38,10 +38,8 @@ PETSC_INTERN PetscErrorCode EqmBarrierAdd(EqmSolver solver, EqmBarrier barrier, 
 /* The smallest ratio of cells and boundary facets at the present map, and how many of both are folded. Collective. */
 PETSC_INTERN PetscErrorCode EqmBarrierLook(EqmSolver solver, EqmBarrier barrier, PetscReal *least, PetscInt64 *folds);
 
-/* ---- what it adds to the metric, A/2 times its Hessian as far as that is positive (barrier_metric.c) */
-/* To the Laplacian L_V, per local cell and edge. Not collective. */
-PETSC_INTERN void EqmBarrierAddLaplacian(EqmSolver solver, PetscReal *weights);
-/* To the Gauss-Newton matrix of a cell, in the degrees of freedom of its corners. Not collective. */
+/* What it adds to the metric's matrix of a cell, A/2 times its Hessian as far as that is positive, in the degrees of
+   freedom of the corners (barrier_metric.c). Not collective. */
 PETSC_INTERN void EqmBarrierAddMatrix(EqmSolver solver, PetscInt cell, PetscReal *matrix);
 
 #endif

@@ -43,20 +43,6 @@ static PetscReal ShapeFactor(EqmSolver solver, const EqmBarrierTerm *term)
   return PetscSqr(solver->barrier->total) * term->by_stretch / solver->mesh->num_cells;
 }
 
-void EqmBarrierAddLaplacian(EqmSolver solver, PetscReal *weights)
-{
-  const EqmMesh mesh = solver->mesh;
-
-  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    const EqmBarrierTerm term = TermOf(solver, c);
-    const PetscReal factor = 1. + mesh->weight[c] * Stiffness(mesh, c, &term); /* L_V has da da^T / w */
-    for (PetscInt e = 0; e < 6; e++) {
-      const PetscInt k = 6 * c + e;
-      weights[k] = factor * weights[k] + ShapeFactor(solver, &term) * solver->barrier->edge[k];
-    }
-  }
-}
-
 static void AddSquare(const CellFrame *frame, PetscReal factor, PetscReal gradient[4][3], PetscReal *matrix)
 {
   PetscReal rate[12];
