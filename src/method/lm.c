@@ -10,6 +10,7 @@
    Hessian of quasi-Newton steps for as long as these pay. */
 #include "method/lm.h"
 #include <math.h>
+#include <string.h>
 
 enum { MOST_DAMPINGS = 8, MEMORY = 10 };
 /* Weighted by the residual, the metric fades by itself; below this its near-null directions would carry rounding, not
@@ -167,8 +168,10 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(EqmLmEvaluate(solver, &lm->now));
   if (!(lm->now.objective < INFINITY)) {
     EqmFail(solver->comm, EQM_ERR_USAGE,
-            "-method lm needs a start without folds, and -start %s has %" PetscInt64_FMT "; take -start guarded",
-            solver->settings.start, solver->totals.folds);
+            "-method lm needs a start without folds, and -start %s has %" PetscInt64_FMT "; %s", solver->settings.start,
+            solver->totals.folds,
+            strcmp(solver->settings.start, "guarded") ? "take -start guarded"
+                                                      : "another -start or -method may still do, or a better mesh");
   }
   solver->objective = lm->now.objective;
   solver->gradient_norm = -1.;

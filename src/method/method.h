@@ -196,6 +196,9 @@ PETSC_INTERN PetscErrorCode EqmSphereTutte(EqmSolver solver);
 /* The Gauss map (004 Definition 5.1); with `steps` > 0 smoothed by as many steps of heat flow as it takes to lose its
  * folds, `steps` at most, and unfolded. Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereGauss(EqmSolver solver, PetscInt steps);
+/* The linear map, followed by as few fixed-point steps, `most_steps` at most, as it takes for unfolding to lose all
+   folds and for the arithmetic to resolve all triangles; else that or Tutte's, whichever folds less. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereGuarded(EqmSolver solver, PetscInt most_steps);
 /* One step of 001 Algorithm 2 with inversion radius 1.2 around the pole that `step` (counted from 0) has its turn.
  * Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscReal *weights);

@@ -1,6 +1,5 @@
 /* First maps. */
 #include "method/method.h"
-#include <stdint.h>
 
 typedef struct StartRow StartRow;
 struct StartRow {
@@ -8,14 +7,14 @@ struct StartRow {
   EqmStartFamily family;
   PetscErrorCode (*run)(EqmSolver, const StartRow *, PetscInt steps);
   EqmLaplacianKind laplacian;
-  PetscBool
-      guarded; /* planar: fixed-point steps are cut short before the first fold; sphere: taken only where they help */
-  PetscInt steps; /* fixed-point steps unless -start_steps says otherwise */
+  PetscBool guarded; /* planar: fixed-point steps are cut short before the first fold */
+  PetscInt steps;    /* fixed-point steps unless -start_steps says otherwise */
 };
 
 static PetscErrorCode StartBoundary(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartInPlane(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartOnSphere(EqmSolver, const StartRow *, PetscInt);
+static PetscErrorCode StartGuarded(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartDescending(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartConformal(EqmSolver, const StartRow *, PetscInt);
 static PetscErrorCode StartResolved(EqmSolver, const StartRow *, PetscInt);
@@ -40,8 +39,8 @@ static const StartRow starts[] = {
      EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 10},
     {"descending", "linear, then fixed-point steps for as long as the energy falls, seven at most (001 section 6.3)",
      EQM_STARTS_SPHERE, StartDescending, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 7},
-    {"guarded", "linear, with fixed-point steps and unfolding where it folds", EQM_STARTS_SPHERE, StartOnSphere,
-     EQM_LAPLACIAN_COTANGENT, PETSC_TRUE, 15},
+    {"guarded", "linear; where it folds or shrinks limbs to points, fixed-point steps and unfolding, or tutte",
+     EQM_STARTS_SPHERE, StartGuarded, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 15},
     {"conformal", "linear, then the Mobius map that brings its mass centre to the sphere's", EQM_STARTS_SPHERE,
      StartConformal, EQM_LAPLACIAN_COTANGENT, PETSC_FALSE, 0},
     {"resolved",
@@ -174,39 +173,6 @@ static PetscErrorCode StartInPlane(EqmSolver solver, const StartRow *row, PetscI
   PetscFunctionReturn(0);
 }
 
-/* Fixed-point steps shrink what the linear map blows up, and fold here and there; unfolding mends what is not too bad.
-   Take as few steps as lead to a map without folds, else the map with the fewest. */
-static PetscErrorCode UnfoldedFixedPoint(EqmSolver solver, PetscInt most_steps, PetscReal *weights)
-{
-  enum { STEPS_BETWEEN = 5 };
-  EqmPlace raw, best;
-  PetscInt64 fewest = INT64_MAX, from = 0;
-
-  PetscFunctionBegin;
-  PetscCall(EqmPlaceCreate(solver->domain, &raw));
-  PetscCall(EqmPlaceCreate(solver->domain, &best));
-  for (PetscInt k = 0; fewest > 0; k++) {
-    if (k % STEPS_BETWEEN == 0) {
-      PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &raw));
-      PetscCall(EqmSphereUnfold(solver, &solver->unfolded_from, &solver->unfolded_to));
-      if (solver->unfolded_to < fewest) {
-        fewest = solver->unfolded_to;
-        from = solver->unfolded_from;
-        PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &best));
-      }
-      PetscCall(EqmPlaceCopy(solver->domain, &raw, &solver->place));
-    }
-    if (k >= most_steps) break;
-    PetscCall(EqmSphereFixedPointStep(solver, k, weights));
-  }
-  PetscCall(EqmPlaceCopy(solver->domain, &best, &solver->place));
-  solver->unfolded_from = from;
-  solver->unfolded_to = fewest;
-  PetscCall(EqmPlaceDestroy(&raw));
-  PetscCall(EqmPlaceDestroy(&best));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode StartOnSphere(EqmSolver solver, const StartRow *row, PetscInt steps)
 {
   PetscReal *weights;
@@ -214,12 +180,16 @@ static PetscErrorCode StartOnSphere(EqmSolver solver, const StartRow *row, Petsc
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
   PetscCall(EqmSphereLinear(solver, PETSC_FALSE));
-  if (row->guarded) {
-    PetscCall(UnfoldedFixedPoint(solver, steps, weights));
-  } else {
-    for (PetscInt k = 0; k < steps; k++) PetscCall(EqmSphereFixedPointStep(solver, k, weights));
-  }
+  for (PetscInt k = 0; k < steps; k++) PetscCall(EqmSphereFixedPointStep(solver, k, weights));
   PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartGuarded(EqmSolver solver, const StartRow *row, PetscInt steps)
+{
+  (void)row;
+  PetscFunctionBegin;
+  PetscCall(EqmSphereGuarded(solver, steps));
   PetscFunctionReturn(0);
 }
 
