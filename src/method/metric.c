@@ -69,28 +69,16 @@ static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
   const EqmDomain domain = gn->solver->domain;
   const PetscInt *const v = domain->mesh->cells + 4 * cell;
   const PetscReal *const x = gn->solver->place.x, *const p[] = {x + 3 * v[0], x + 3 * v[1], x + 3 * v[2], x + 3 * v[3]};
-  PetscReal gradient[12], frame[4][9], laplacian[4][4], rate[12];
-  const PetscReal weight = domain->mesh->weight[cell];
-  PetscInt corner[12], number[12], n = 0;
+  PetscReal gradient[4][3], laplacian[4][4];
+  EqmCellFrame frame;
 
-  EqmVolumeGradient(p, gradient);
+  EqmCellFrameFind(domain, &gn->solver->place, cell, &frame);
+  for (PetscInt k = 0; k < frame.count * frame.count; k++) matrix[k] = 0.;
+  EqmVolumeGradient(p, gradient[0]);
+  EqmCellFrameAddSquare(&frame, 1. / domain->mesh->weight[cell], gradient, matrix);
   EqmCellLaplacian(4, gn->weights + 6 * cell, laplacian);
-  for (PetscInt a = 0; a < 4; a++) {
-    const PetscInt count = EqmDomainFrame(domain, &gn->solver->place, v[a], frame[a]);
-    for (PetscInt k = 0; k < count; k++, n++) {
-      corner[n] = a;
-      number[n] = k;
-      rate[n] = EqmDot3(gradient + 3 * a, frame[a] + 3 * k);
-    }
-  }
-  for (PetscInt i = 0; i < n; i++) {
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscInt a = corner[i], b = corner[j];
-      matrix[n * i + j] = rate[i] * rate[j] / weight +
-                          l_v_share * laplacian[a][b] * EqmDot3(frame[a] + 3 * number[i], frame[b] + 3 * number[j]);
-    }
-  }
-  if (gn->solver->barrier) EqmBarrierAddMatrix(gn->solver, cell, matrix);
+  EqmCellFrameAddLaplacian(&frame, l_v_share, laplacian, matrix);
+  if (gn->solver->barrier) EqmBarrierAddMatrix(gn->solver, cell, &frame, matrix);
 }
 
 /* Without compression, and the smoothest that there are. Rotations cost a third more per cycle and save less. */

@@ -40,6 +40,6 @@ PETSC_INTERN PetscErrorCode EqmBarrierLook(EqmSolver solver, EqmBarrier barrier,
 
 /* What it adds to the metric's matrix of a cell, A/2 times its Hessian as far as that is positive, in the degrees of
    freedom of the corners (barrier_metric.c). Not collective. */
-PETSC_INTERN void EqmBarrierAddMatrix(EqmSolver solver, PetscInt cell, PetscReal *matrix);
+PETSC_INTERN void EqmBarrierAddMatrix(EqmSolver solver, PetscInt cell, const EqmCellFrame *frame, PetscReal *matrix);
 
 #endif

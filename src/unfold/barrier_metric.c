@@ -3,25 +3,6 @@
 #include "unfold/barrier.h"
 #include "energy/kernel.h"
 
-/* The corners' degrees of freedom as directions in space. */
-typedef struct {
-  PetscInt count, corner[12];
-  PetscReal direction[12][3];
-} CellFrame;
-
-static void FindFrame(EqmSolver solver, PetscInt cell, CellFrame *frame)
-{
-  frame->count = 0;
-  for (PetscInt a = 0; a < 4; a++) {
-    PetscReal axes[9];
-    const PetscInt count = EqmDomainFrame(solver->domain, &solver->place, solver->mesh->cells[4 * cell + a], axes);
-    for (PetscInt k = 0; k < count; k++, frame->count++) {
-      frame->corner[frame->count] = a;
-      for (PetscInt c = 0; c < 3; c++) frame->direction[frame->count][c] = axes[3 * k + c];
-    }
-  }
-}
-
 /* The barrier's term of a cell at the present map. */
 static EqmBarrierTerm TermOf(EqmSolver solver, PetscInt cell)
 {
@@ -43,18 +24,8 @@ static PetscReal ShapeFactor(EqmSolver solver, const EqmBarrierTerm *term)
   return PetscSqr(solver->barrier->total) * term->by_stretch / solver->mesh->num_cells;
 }
 
-static void AddSquare(const CellFrame *frame, PetscReal factor, PetscReal gradient[4][3], PetscReal *matrix)
-{
-  PetscReal rate[12];
-
-  for (PetscInt i = 0; i < frame->count; i++) rate[i] = EqmDot3(gradient[frame->corner[i]], frame->direction[i]);
-  for (PetscInt i = 0; i < frame->count; i++) {
-    for (PetscInt j = 0; j < frame->count; j++) matrix[frame->count * i + j] += factor * rate[i] * rate[j];
-  }
-}
-
 /* The cell between the origin and a facet of this cell. */
-static void AddFacet(EqmSolver solver, PetscInt cell, PetscInt facet, const CellFrame *frame, PetscReal *matrix)
+static void AddFacet(EqmSolver solver, PetscInt cell, PetscInt facet, const EqmCellFrame *frame, PetscReal *matrix)
 {
   const EqmMesh mesh = solver->mesh;
   const EqmBarrier barrier = solver->barrier;
@@ -70,11 +41,11 @@ static void AddFacet(EqmSolver solver, PetscInt cell, PetscInt facet, const Cell
       for (PetscInt k = 0; k < 3; k++) gradient[a][k] /= 6.;
     }
   }
-  AddSquare(frame, .5 * PetscMax(0., term.second) / (barrier->num_facets * PetscSqr(barrier->share[facet])), gradient,
-            matrix);
+  EqmCellFrameAddSquare(frame, .5 * PetscMax(0., term.second) / (barrier->num_facets * PetscSqr(barrier->share[facet])),
+                        gradient, matrix);
 }
 
-void EqmBarrierAddMatrix(EqmSolver solver, PetscInt cell, PetscReal *matrix)
+void EqmBarrierAddMatrix(EqmSolver solver, PetscInt cell, const EqmCellFrame *frame, PetscReal *matrix)
 {
   const EqmMesh mesh = solver->mesh;
   const EqmBarrier barrier = solver->barrier;
@@ -82,19 +53,13 @@ void EqmBarrierAddMatrix(EqmSolver solver, PetscInt cell, PetscReal *matrix)
   const PetscReal *const x = solver->place.x, *const p[] = {x + 3 * v[0], x + 3 * v[1], x + 3 * v[2], x + 3 * v[3]};
   const EqmBarrierTerm term = TermOf(solver, cell);
   PetscReal gradient[4][3], laplacian[4][4];
-  CellFrame frame;
 
-  FindFrame(solver, cell, &frame);
   EqmVolumeGradient(p, gradient[0]);
-  AddSquare(&frame, Stiffness(mesh, cell, &term), gradient, matrix);
+  EqmCellFrameAddSquare(frame, Stiffness(mesh, cell, &term), gradient, matrix);
   EqmCellLaplacian(4, barrier->edge + 6 * cell, laplacian);
-  for (PetscInt i = 0; i < frame.count; i++) {
-    for (PetscInt j = 0; j < frame.count; j++)
-      matrix[frame.count * i + j] += ShapeFactor(solver, &term) * laplacian[frame.corner[i]][frame.corner[j]] *
-                                     EqmDot3(frame.direction[i], frame.direction[j]);
-  }
+  EqmCellFrameAddLaplacian(frame, ShapeFactor(solver, &term), laplacian, matrix);
   for (PetscInt k = 0; k < 4; k++) {
     const PetscInt facet = barrier->facet_of[4 * cell + k];
-    if (facet >= 0) AddFacet(solver, cell, facet, &frame, matrix);
+    if (facet >= 0) AddFacet(solver, cell, facet, frame, matrix);
   }
 }

@@ -67,9 +67,11 @@ static PetscErrorCode TestMatrix(EqmSolver solver)
 
   PetscFunctionBegin;
   for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) {
+    EqmCellFrame frame;
     PetscReal matrix[144] = {0.}, product = 0., trace = 0.;
     PetscInt n = 0;
-    EqmBarrierAddMatrix(solver, c, matrix);
+    EqmCellFrameFind(solver->domain, &solver->place, c, &frame);
+    EqmBarrierAddMatrix(solver, c, &frame, matrix);
     for (PetscInt a = 0; a < 4; a++) n += solver->mesh->on_boundary[solver->mesh->cells[4 * c + a]] ? 2 : 3;
     for (PetscInt i = 0; i < n; i++) {
       trace += matrix[n * i + i];
