@@ -6,7 +6,7 @@
 #   with_checkpoint ARGS...    sets `arguments`: ARGS with a checkpoint beside the output, and -restart where one lies there
 #   watch_the_clock SECONDS    adds -wall_time to them, for a job that has so long and is not warned before its end
 #   run_and_forward COMMAND... runs it, hands USR1 and TERM on as USR1, sets `code` to its exit code
-#   finish                     ends the script with `code`; after 75, submits the job again by calling `requeue`, at most
+#   finish                     ends the script with `code`; after 75, puts the job back into the queue with `requeue`, at most
 #                              $EQUIMAP_REQUEUES times (20), `attempt` being how often that has happened already
 #   sweep_row ROW TABLE ...    one row of a sweep, or the whole sweep if ROW is empty, to the end of the script
 jobs_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -96,10 +96,10 @@ finish() {
   elif [ "$attempt" -ge "$most" ]; then
     say "stopped with a checkpoint, and submitted again $attempt times already: enough (EQUIMAP_REQUEUES=$most);" \
       "submit it by hand to go on" >&2
-  elif requeue; then
-    say "stopped with a checkpoint; submitted again ($((attempt + 1)) of at most $most)"
   else
-    say "stopped with a checkpoint, but could not be submitted again; submit it by hand to go on" >&2
+    # Said before it is done: Slurm may end this script before requeue returns.
+    say "stopped with a checkpoint; back into the queue ($((attempt + 1)) of at most $most)"
+    requeue || say "could not be put back into the queue; submit it by hand to go on" >&2
   fi
   exit "$code"
 }

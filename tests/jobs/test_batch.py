@@ -49,7 +49,7 @@ def check_pbs():
     given = {"EQUIMAP_COMMAND": COMMAND.format(name="pbs"), "EQUIMAP_JOBS": str(JOBS), "PBS_JOBID": "1.server",
              "EQUIMAP_QSUB": "-N equimap -l select=1:ncpus=1:mpiprocs=1", "EQUIMAP_RANKS": "1"}
     said = script("run.pbs", expected=75, until="pbs.checkpoint.h5", **given)
-    assert "told to stop (TERM)" in said and "submitted again (1 of at most 20)" in said, said
+    assert "told to stop (TERM)" in said and "back into the queue (1 of at most 20)" in said, said
     noted = pathlib.Path("qsub.log").read_text()
     assert "-V -N equimap -l select=1:ncpus=1:mpiprocs=1" in noted and "EQUIMAP_ATTEMPT=1" in noted, noted
     said = script("run.pbs", expected=75, EQUIMAP_ATTEMPT="1", EQUIMAP_WALLTIME="00:00:03", EQUIMAP_REQUEUES="1", **given)

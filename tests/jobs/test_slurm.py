@@ -73,7 +73,7 @@ def check_waits(cluster):
     preempted.check_second_attempt()
     limited.await_requeue(60)
     limited.check_second_attempt()
-    assert "told to stop (USR1)" in limited.log() and "submitted again (1 of at most 20)" in limited.log(), limited.log()
+    assert "told to stop (USR1)" in limited.log() and "back into the queue (1 of at most 20)" in limited.log(), limited.log()
 
 
 def check_cap(cluster):
