@@ -14,6 +14,19 @@ typedef struct {
   Vec gradient, trial_gradient, direction;
 } Lbfgs;
 
+PetscErrorCode EqmLbfgsRestart(EqmSolver solver)
+{
+  Lbfgs *const lb = solver->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPairsForget(lb->pairs));
+  PetscCall(EqmMetricRefresh(solver, lb->metric));
+  PetscCall(
+      solver->problem->objective->evaluate(solver, &solver->place, solver->image, &solver->objective, lb->gradient));
+  PetscCall(VecNorm(lb->gradient, NORM_2, &solver->gradient_norm));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SetUp(EqmSolver solver)
 {
   Lbfgs *lb;
@@ -28,10 +41,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(VecDuplicate(lb->gradient, &lb->trial_gradient));
   PetscCall(VecDuplicate(lb->gradient, &lb->direction));
   PetscCall(EqmPairsCreate(lb->gradient, solver->settings.lbfgs_memory, &lb->pairs));
-  PetscCall(EqmMetricRefresh(solver, lb->metric));
-  PetscCall(
-      solver->problem->objective->evaluate(solver, &solver->place, solver->image, &solver->objective, lb->gradient));
-  PetscCall(VecNorm(lb->gradient, NORM_2, &solver->gradient_norm));
+  PetscCall(EqmLbfgsRestart(solver));
   PetscFunctionReturn(0);
 }
 

@@ -134,6 +134,9 @@ PETSC_INTERN PetscErrorCode EqmSolverSetFields(EqmSolver solver, const EqmPlace 
 PETSC_INTERN const EqmMethod EqmMethodFixedPoint, EqmMethodNcg, EqmMethodLbfgs, EqmMethodRgd, EqmMethodLm,
     EqmMethodRiemann, EqmMethodCovering, EqmMethodQiem, EqmMethodEulerExplicit, EqmMethodEulerImplicit, EqmMethodNewton;
 typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
+/* lbfgs, once set up, begins anew at the present map, whose objective may have changed: without its pairs, with a
+   metric from here. Collective. */
+PETSC_INTERN PetscErrorCode EqmLbfgsRestart(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSettingsDefault(EqmSettings *settings);
 
 /* Domain, ordering, first map. Collective. */

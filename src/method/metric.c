@@ -9,10 +9,11 @@
 #include "unfold/barrier.h"
 
 struct _p_EqmMetric {
-  PetscReal *weights, *mass, *columns, *ambient;
-  signed char *group;
+  PetscReal *weights;
   EqmPlace at;            /* the map that the present factor belongs to */
-  EqmLinear gauss_newton; /* in the ball, with vertices in frames; else NULL */
+  EqmLinear gauss_newton; /* in the ball, with vertices in frames; else NULL, and there is a Laplacian: */
+  PetscReal *mass, *columns, *ambient;
+  signed char *group;
 };
 
 /* A vertex in spherical coordinates has no frame that a factor could turn with. */
@@ -21,23 +22,34 @@ static PetscBool NeedsGaussNewton(EqmDomain domain)
   return (PetscBool)(domain->measure == EQM_MEASURE_VOLUME && !domain->spherical_coordinates);
 }
 
-PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
+/* What a Laplacian's matrix and its columns of right-hand sides take. */
+static PetscErrorCode MakeRoomForLaplacian(EqmSolver solver, EqmMetric metric)
 {
   const EqmMesh mesh = solver->mesh;
   const PetscInt dim = solver->domain->dim;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(mesh->num_local_cells, &metric->mass, dim * mesh->num_owned, &metric->columns,
+                         dim * mesh->num_local, &metric->ambient, mesh->num_local, &metric->group));
+  for (PetscInt v = 0; v < mesh->num_local; v++) {
+    metric->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
+{
+  const EqmMesh mesh = solver->mesh;
   EqmMetric metric;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&metric));
-  PetscCall(PetscMalloc5(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &metric->weights, mesh->num_local_cells,
-                         &metric->mass, dim * mesh->num_owned, &metric->columns, dim * mesh->num_local,
-                         &metric->ambient, mesh->num_local, &metric->group));
-  for (PetscInt v = 0; v < mesh->num_local; v++) {
-    metric->group[v] = solver->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
-  }
+  PetscCall(PetscMalloc1(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &metric->weights));
   PetscCall(EqmPlaceCreate(solver->domain, &metric->at));
   if (NeedsGaussNewton(solver->domain))
     PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_METRIC, &metric->gauss_newton));
+  else
+    PetscCall(MakeRoomForLaplacian(solver, metric));
   *out = metric;
   PetscFunctionReturn(0);
 }
@@ -47,7 +59,8 @@ PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
   PetscFunctionBegin;
   if (!*metric) PetscFunctionReturn(0);
   PetscCall(EqmPlaceDestroy(&(*metric)->at));
-  PetscCall(PetscFree5((*metric)->weights, (*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
+  PetscCall(PetscFree((*metric)->weights));
+  PetscCall(PetscFree4((*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
   PetscCall(EqmLinearDestroy(&(*metric)->gauss_newton));
   PetscCall(PetscFree(*metric));
   PetscFunctionReturn(0);

@@ -14,7 +14,8 @@ typedef struct {
   PetscReal energy;
 } Found;
 
-/* Descend by so many steps with the barrier as it is; the objective before and after. */
+/* Descend by so many steps of L-BFGS with the barrier as it is, with the pattern of the first time; the objective
+   before and after. */
 static PetscErrorCode Descend(EqmSolver solver, PetscInt most_steps, PetscReal *before, PetscReal *after)
 {
   const PetscInt iterations = solver->iteration;
@@ -23,14 +24,16 @@ static PetscErrorCode Descend(EqmSolver solver, PetscInt most_steps, PetscReal *
   PetscFunctionBegin;
   solver->barrier->shape_weight = shape_share * solver->barrier->weight;
   solver->iteration = 0; /* the method counts from here when its metric is due */
-  PetscCall(EqmMethodLbfgs.set_up(solver));
+  if (solver->data)
+    PetscCall(EqmLbfgsRestart(solver));
+  else
+    PetscCall(EqmMethodLbfgs.set_up(solver));
   *before = solver->objective;
   while (solver->iteration < most_steps && outcome == EQM_STEP_TAKEN) {
     PetscCall(EqmMethodLbfgs.step(solver, &outcome));
     solver->iteration++;
   }
   *after = solver->objective;
-  PetscCall(EqmMethodLbfgs.destroy(solver));
   solver->iteration = iterations;
   PetscFunctionReturn(0);
 }
@@ -84,6 +87,7 @@ PetscErrorCode EqmBallUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *a
     PetscCall(Descend(solver, SETTLE_STEPS, &start, &end));
     PetscCall(Compare(solver, &best, &folds, &least));
   }
+  PetscCall(EqmMethodLbfgs.destroy(solver));
   PetscCall(EqmBarrierDestroy(&solver->barrier));
   PetscCall(EqmPlaceCopy(solver->domain, &best.place, &solver->place));
   PetscCall(EqmPlaceDestroy(&best.place));
