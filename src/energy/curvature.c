@@ -8,19 +8,11 @@ typedef struct {
 } Displacement;
 
 /* The displacements that a cell's degrees of freedom stand for. */
-static void FindDirections(EqmDomain domain, const EqmPlace *place, const PetscInt *vertex, EqmCellDerivatives *d,
-                           Displacement direction[EQM_MOST_CELL_DOFS])
+static void FindDirections(PetscInt dim, const EqmCellFrame *frame, Displacement direction[EQM_MOST_CELL_DOFS])
 {
-  d->count = 0;
-  for (PetscInt a = 0; a < domain->mesh->cell_size; a++) {
-    PetscReal frame[9];
-    const PetscInt count = EqmDomainFrame(domain, place, vertex[a], frame);
-    for (PetscInt k = 0; k < count; k++, d->count++) {
-      d->corner[d->count] = a;
-      direction[d->count] = (Displacement){{0.}};
-      for (PetscInt c = 0; c < domain->dim; c++)
-        direction[d->count].x[domain->dim * a + c] = frame[domain->dim * k + c];
-    }
+  for (PetscInt i = 0; i < frame->count; i++) {
+    direction[i] = (Displacement){{0.}};
+    for (PetscInt c = 0; c < dim; c++) direction[i].x[dim * frame->corner[i] + c] = frame->direction[i][c];
   }
 }
 
@@ -42,9 +34,10 @@ void EqmCellDifferentiate(EqmDomain domain, const EqmPlace *place, PetscInt cell
   Displacement direction[EQM_MOST_CELL_DOFS], sum;
 
   for (PetscInt a = 0; a < corners; a++) p[a] = place->x + dim * v[a];
-  FindDirections(domain, place, v, d, direction);
+  EqmCellFrameFind(domain, place, cell, &d->frame);
+  FindDirections(dim, &d->frame, direction);
   EqmMeasureGradient(domain->measure, p, gradient);
-  for (PetscInt i = 0; i < d->count; i++) {
+  for (PetscInt i = 0; i < d->frame.count; i++) {
     d->first[i] = 0.;
     for (PetscInt k = 0; k < dim * corners; k++) d->first[i] += gradient[k] * direction[i].x[k];
     d->second[i][i] = Bend(domain, p, &direction[i]);
@@ -53,8 +46,9 @@ void EqmCellDifferentiate(EqmDomain domain, const EqmPlace *place, PetscInt cell
       d->second[i][j] = d->second[j][i] = .5 * (Bend(domain, p, &sum) - d->second[i][i] - d->second[j][j]);
     }
   }
-  for (PetscInt i = 0; i < d->count; i++) { /* a geodesic of unit speed on a circle or sphere has the acceleration -x */
-    const PetscInt a = d->corner[i], kind = domain->kind[v[a]];
+  for (PetscInt i = 0; i < d->frame.count;
+       i++) { /* a geodesic of unit speed on a circle or sphere has the acceleration -x */
+    const PetscInt a = d->frame.corner[i], kind = domain->kind[v[a]];
     if (kind != EQM_VERTEX_CIRCLE && kind != EQM_VERTEX_SPHERE) continue;
     for (PetscInt c = 0; c < dim; c++) d->second[i][i] -= gradient[dim * a + c] * p[a][c];
   }

@@ -2,13 +2,10 @@
 #ifndef EQM_CURVATURE_H
 #define EQM_CURVATURE_H
 
-#include <equimap/energy.h>
-
-enum { EQM_MOST_CELL_DOFS = 12 };
+#include "energy/cellframe.h"
 
 typedef struct {
-  PetscInt count;                      /* degrees of freedom of the cell, corner by corner */
-  PetscInt corner[EQM_MOST_CELL_DOFS]; /* whose each is */
+  EqmCellFrame frame; /* the degrees of freedom */
   PetscReal first[EQM_MOST_CELL_DOFS];
   PetscReal second[EQM_MOST_CELL_DOFS][EQM_MOST_CELL_DOFS]; /* along geodesics */
 } EqmCellDerivatives;

@@ -1,6 +1,5 @@
 /* Matrices of all degrees of freedom of the domain. */
 #include "method/method.h"
-#include "energy/kernel.h"
 
 /* A solver with the domain's degrees of freedom as unknowns. The start's own, a quarter of the memory and of no more
    use, goes. Collective. */
@@ -42,36 +41,4 @@ PetscErrorCode EqmSolverSetFields(EqmSolver solver, const EqmPlace *place, EqmLi
   PetscCall(VecDestroy(&dofs));
   PetscCall(PetscFree2(fields, velocity));
   PetscFunctionReturn(0);
-}
-
-void EqmCellFrameFind(EqmDomain domain, const EqmPlace *place, PetscInt cell, EqmCellFrame *frame)
-{
-  frame->count = 0;
-  for (PetscInt a = 0; a < 4; a++) {
-    PetscReal axes[9];
-    const PetscInt count = EqmDomainFrame(domain, place, domain->mesh->cells[4 * cell + a], axes);
-    for (PetscInt k = 0; k < count; k++, frame->count++) {
-      frame->corner[frame->count] = a;
-      for (PetscInt c = 0; c < 3; c++) frame->direction[frame->count][c] = axes[3 * k + c];
-    }
-  }
-}
-
-void EqmCellFrameAddSquare(const EqmCellFrame *frame, PetscReal factor, PetscReal gradient[4][3], PetscReal *matrix)
-{
-  PetscReal rate[EQM_MOST_CELL_UNKNOWNS];
-
-  for (PetscInt i = 0; i < frame->count; i++) rate[i] = EqmDot3(gradient[frame->corner[i]], frame->direction[i]);
-  for (PetscInt i = 0; i < frame->count; i++) {
-    for (PetscInt j = 0; j < frame->count; j++) matrix[frame->count * i + j] += factor * rate[i] * rate[j];
-  }
-}
-
-void EqmCellFrameAddLaplacian(const EqmCellFrame *frame, PetscReal factor, PetscReal laplacian[4][4], PetscReal *matrix)
-{
-  for (PetscInt i = 0; i < frame->count; i++) {
-    for (PetscInt j = 0; j < frame->count; j++)
-      matrix[frame->count * i + j] +=
-          factor * laplacian[frame->corner[i]][frame->corner[j]] * EqmDot3(frame->direction[i], frame->direction[j]);
-  }
 }

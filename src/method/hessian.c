@@ -31,10 +31,10 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
   EqmCellDerivatives d;
 
   EqmCellDifferentiate(h->solver->domain, &h->solver->place, cell, &d);
-  for (PetscInt i = 0; i < d.count; i++) {
-    for (PetscInt j = 0; j < d.count; j++)
-      matrix[d.count * i + j] = scale * d.first[i] * d.first[j] + h->slope[cell] * d.second[i][j];
-    matrix[d.count * i + i] -= h->shift * h->share[mesh->cells[mesh->cell_size * cell + d.corner[i]]];
+  for (PetscInt i = 0; i < d.frame.count; i++) {
+    for (PetscInt j = 0; j < d.frame.count; j++)
+      matrix[d.frame.count * i + j] = scale * d.first[i] * d.first[j] + h->slope[cell] * d.second[i][j];
+    matrix[d.frame.count * i + i] -= h->shift * h->share[mesh->cells[mesh->cell_size * cell + d.frame.corner[i]]];
   }
 }
 
@@ -53,8 +53,8 @@ static PetscErrorCode Prepare(Hessian *h)
     EqmCellDerivatives d;
     EqmCellDifferentiate(h->solver->domain, &h->solver->place, c, &d);
     h->slope[c] = 2. * (h->solver->image[c] / (mesh->weight[c] * totals->total) - 1.) - totals->energy / totals->total;
-    for (PetscInt i = 0; i < d.count; i++) {
-      for (PetscInt j = 0; j < d.count; j++) squares += PetscSqr(h->slope[c] * d.second[i][j]);
+    for (PetscInt i = 0; i < d.frame.count; i++) {
+      for (PetscInt j = 0; j < d.frame.count; j++) squares += PetscSqr(h->slope[c] * d.second[i][j]);
       diagonal = PetscMax(diagonal, 2. * d.first[i] * d.first[i] / (mesh->weight[c] * totals->total));
     }
     largest[1] = PetscMax(largest[1], diagonal);

@@ -2,26 +2,9 @@
 #include "method/lm.h"
 #include "energy/kernel.h"
 
-/* The degrees of freedom of a cell's vertices: corner and direction of each; returns how many. */
-static inline PetscInt CellBasis(EqmDomain domain, const EqmPlace *place, const PetscInt v[3], PetscInt corner[6],
-                                 PetscReal basis[6][3])
-{
-  PetscInt n = 0;
-
-  for (PetscInt a = 0; a < 3; a++) {
-    PetscReal frame[9];
-    const PetscInt count = EqmDomainFrame(domain, place, v[a], frame);
-    for (PetscInt k = 0; k < count; k++, n++) {
-      corner[n] = a;
-      for (PetscInt c = 0; c < domain->dim; c++) basis[n][c] = frame[domain->dim * k + c];
-    }
-  }
-  return n;
-}
-
-/* d rho and (sphere, else zero) d q by each of them. */
-static inline void CellGradients(EqmSolver solver, PetscInt cell, PetscInt n, const PetscInt corner[6],
-                                 PetscReal basis[6][3], PetscReal of_rho[6], PetscReal of_lean[6])
+/* d rho and (sphere, else zero) d q by each degree of freedom of a cell. */
+static inline void CellGradients(EqmSolver solver, PetscInt cell, const EqmCellFrame *frame, PetscReal of_rho[6],
+                                 PetscReal of_lean[6])
 {
   const EqmLm *const lm = solver->data;
   const EqmDomain domain = solver->domain;
@@ -31,13 +14,15 @@ static inline void CellGradients(EqmSolver solver, PetscInt cell, PetscInt n, co
 
   EqmMeasureGradient(domain->measure, p, area);
   if (lm->kappa > 0.) EqmMeasureGradient(EQM_MEASURE_HALF_DET, p, det);
-  for (PetscInt i = 0; i < n; i++) {
+  for (PetscInt i = 0; i < frame->count; i++) {
+    const PetscReal *const direction = frame->direction[i];
+    const PetscInt first = dim * frame->corner[i];
     PetscReal along_area = 0., along_det = 0.;
-    for (PetscInt k = 0; k < dim; k++) along_area += area[dim * corner[i] + k] * basis[i][k];
+    for (PetscInt k = 0; k < dim; k++) along_area += area[first + k] * direction[k];
     of_rho[i] = lm->slope[cell] * along_area;
     of_lean[i] = 0.;
     if (!(lm->kappa > 0.)) continue;
-    for (PetscInt k = 0; k < dim; k++) along_det += det[dim * corner[i] + k] * basis[i][k];
+    for (PetscInt k = 0; k < dim; k++) along_det += det[first + k] * direction[k];
     of_lean[i] = along_det / lm->now.half_det[cell] - along_area / lm->now.image[cell];
   }
 }
@@ -53,26 +38,25 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
   const PetscReal elastic = .5 * PetscSqrtReal(3.) * lm->mu * (PetscAbsReal(lm->now.residual[cell]) + floor);
   const PetscReal angle = .5 * lm->angle_weight, weight = mesh->weight[cell];
   const PetscBool drawn = (PetscBool)(solver->landmarks.num > 0);
-  PetscReal basis[6][3], of_rho[6], of_lean[6];
-  PetscInt corner[6];
-  const PetscInt dim = solver->domain->dim, n = CellBasis(solver->domain, &lm->now.place, v, corner, basis);
+  PetscReal of_rho[6], of_lean[6];
+  EqmCellFrame frame;
 
-  CellGradients(solver, cell, n, corner, basis, of_rho, of_lean);
-  for (PetscInt i = 0; i < n; i++) {
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscInt a = corner[i], b = corner[j];
-      PetscReal dot = 0., entry;
-      for (PetscInt k = 0; k < dim; k++) dot += basis[i][k] * basis[j][k];
-      entry = weight * (of_rho[i] * of_rho[j] + lm->kappa * of_lean[i] * of_lean[j]) +
-              elastic * dot * (a == b ? 2. / 3. : -1. / 3.);
+  EqmCellFrameFind(solver->domain, &lm->now.place, cell, &frame);
+  CellGradients(solver, cell, &frame, of_rho, of_lean);
+  for (PetscInt i = 0; i < frame.count; i++) {
+    for (PetscInt j = 0; j < frame.count; j++) {
+      const PetscReal *const u = frame.direction[i], *const e = frame.direction[j], dot = EqmDot3(u, e);
+      const PetscInt a = frame.corner[i], b = frame.corner[j];
+      PetscReal entry = weight * (of_rho[i] * of_rho[j] + lm->kappa * of_lean[i] * of_lean[j]) +
+                        elastic * dot * (a == b ? 2. / 3. : -1. / 3.);
       if (angle > 0.) { /* L - Hess A; Hess A couples x of one corner with y of the next: +-1/2 */
         const PetscReal *const w = lm->laplacian + 3 * cell;
-        const PetscReal cross = basis[i][0] * basis[j][1] - basis[i][1] * basis[j][0];
+        const PetscReal cross = u[0] * e[1] - u[1] * e[0];
         entry += angle * dot * (a == b ? w[(a + 1) % 3] + w[(a + 2) % 3] : -w[3 - a - b]);
         if (a != b) entry -= angle * cross * (b == (a + 1) % 3 ? .5 : -.5);
       }
       if (drawn && a == b) entry += solver->landmarks.share[v[a]] * dot;
-      matrix[n * i + j] = entry;
+      matrix[frame.count * i + j] = entry;
     }
   }
 }

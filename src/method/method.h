@@ -3,6 +3,7 @@
 #define EQM_METHOD_H
 
 #include <equimap/solver.h>
+#include "energy/cellframe.h"
 #include "linalg/linalg.h"
 #include "method/landmarks.h"
 #include "method/problem.h"
@@ -114,18 +115,6 @@ static inline EqmUnknowns EqmDomainUnknowns(EqmDomain domain)
 }
 
 /* ---- matrices of all degrees of freedom (coupled.c) */
-/* The degrees of freedom of a tetrahedron's corners as directions in space. */
-typedef struct {
-  PetscInt count, corner[EQM_MOST_CELL_UNKNOWNS];
-  PetscReal direction[EQM_MOST_CELL_UNKNOWNS][3];
-} EqmCellFrame;
-PETSC_INTERN void EqmCellFrameFind(EqmDomain domain, const EqmPlace *place, PetscInt cell, EqmCellFrame *frame);
-/* Add factor g g^T to the cell's matrix, g the gradient by the corners' places. Not collective. */
-PETSC_INTERN void EqmCellFrameAddSquare(const EqmCellFrame *frame, PetscReal factor, PetscReal gradient[4][3],
-                                        PetscReal *matrix);
-/* Add a Laplacian of the corners in each coordinate of space, times the factor. Not collective. */
-PETSC_INTERN void EqmCellFrameAddLaplacian(const EqmCellFrame *frame, PetscReal factor, PetscReal laplacian[4][4],
-                                           PetscReal *matrix);
 PETSC_INTERN PetscErrorCode EqmSolverCreateLinear(EqmSolver solver, EqmMatrixUse use, EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmSolverSetFields(EqmSolver solver, const EqmPlace *place, EqmLinear linear,
                                                PetscInt count,

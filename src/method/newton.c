@@ -58,31 +58,20 @@ static PetscErrorCode Destroy(EqmSolver solver)
 static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 {
   const EqmSolver solver = context;
-  const EqmDomain domain = solver->domain;
   const EqmMesh mesh = solver->mesh;
   const Newton *const newton = solver->data;
   const PetscReal scale = 2. / (mesh->weight[cell] * solver->totals.total);
-  PetscReal frame[4][9], laplacian[4][4];
-  PetscInt first[4] = {0};
+  PetscReal laplacian[4][4];
   EqmCellDerivatives d;
 
-  EqmCellDifferentiate(domain, &solver->place, cell, &d);
+  EqmCellDifferentiate(solver->domain, &solver->place, cell, &d);
   EqmCellLaplacian(mesh->cell_size, newton->weights + EqmCellEdges(mesh->cell_size) * cell, laplacian);
-  for (PetscInt a = 0, sum = 0; a < mesh->cell_size; a++) {
-    first[a] = sum;
-    sum += EqmDomainFrame(domain, &solver->place, mesh->cells[mesh->cell_size * cell + a], frame[a]);
+  for (PetscInt a = 0; a < mesh->cell_size; a++) laplacian[a][a] *= 1. + diagonal_share;
+  for (PetscInt i = 0; i < d.frame.count; i++) {
+    for (PetscInt j = 0; j < d.frame.count; j++)
+      matrix[d.frame.count * i + j] = scale * d.first[i] * d.first[j] + newton->slope[cell] * d.second[i][j];
   }
-  for (PetscInt i = 0; i < d.count; i++) {
-    for (PetscInt j = 0; j < d.count; j++) {
-      const PetscInt a = d.corner[i], b = d.corner[j];
-      const PetscReal *const u = frame[a] + domain->dim * (i - first[a]), *const v =
-                                                                              frame[b] + domain->dim * (j - first[b]);
-      PetscReal dot = 0.;
-      for (PetscInt k = 0; k < domain->dim; k++) dot += u[k] * v[k];
-      matrix[d.count * i + j] = scale * d.first[i] * d.first[j] + newton->slope[cell] * d.second[i][j] +
-                                newton->mu * dot * laplacian[a][b] * (i == j ? 1. + diagonal_share : 1.);
-    }
-  }
+  EqmCellFrameAddLaplacian(&d.frame, newton->mu, laplacian, matrix);
 }
 
 /* Slopes and metric at the present map. */

@@ -218,7 +218,7 @@ static PetscErrorCode TestCellDerivatives(EqmDomain domain, const EqmPlace *plac
       for (PetscInt k = 0; k < domain->dof_count[v]; k++, n++)
         x[n] = mine ? s[domain->dof_start[v] - domain->dof_first + k] : 0.;
     }
-    CHECK(n == d.count, "%d degrees of freedom, not %d", (int)d.count, (int)n);
+    CHECK(n == d.frame.count, "%d degrees of freedom, not %d", (int)d.frame.count, (int)n);
     if (!mine) continue;
     for (PetscInt i = 0; i < n; i++) {
       rate += d.first[i] * x[i];
