@@ -2,17 +2,28 @@
 # What the batch scripts share; sourced by run.slurm, run.pbs, run.lsf and sweep.*. Bash.
 #
 #   find_equimap               sets `equimap`: $EQUIMAP, else build/equimap of this tree, else the installed one
-#   find_launcher              sets `launcher`: $EQUIMAP_MPIRUN, else mpirun on $ranks ranks
+#   find_launcher              sets `launcher`: $EQUIMAP_MPIRUN, else mpirun on $ranks ranks; deaf to TERM
 #   with_checkpoint ARGS...    sets `arguments`: ARGS with a checkpoint beside the output, and -restart where one lies there
 #   watch_the_clock SECONDS    adds -wall_time to them, for a job that has so long and is not warned before its end
-#   run_and_forward COMMAND... runs it, hands USR1 and TERM on as USR1, sets `code` to its exit code
+#   run_and_forward COMMAND... runs it, hands USR1 and TERM on as USR1; sets `told` to the last of them, `code` to its exit code
 #   finish                     ends the script with `code`; after 75, puts the job back into the queue with `requeue`, at most
-#                              $EQUIMAP_REQUEUES times (20), `attempt` being how often that has happened already
+#                              $EQUIMAP_REQUEUES times (20), `attempt` being how often that has happened already, and not if
+#                              `withheld` says why not
 #   sweep_row ROW TABLE ...    one row of a sweep, or the whole sweep if ROW is empty, to the end of the script
 jobs_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 stopped=75 # equimap's exit code for "stopped on request with a checkpoint"
 
 say() { echo "$(date '+%F %T') $*"; }
+
+# A request to stop is taken from the first moment on, also when nothing has been started yet.
+told='' child='' woken=no
+take() {
+  told=$1 woken=yes
+  say "told to stop ($1)"
+  [ -z "$child" ] || kill -USR1 "$child" 2>/dev/null
+}
+trap 'take USR1' USR1
+trap 'take TERM' TERM
 
 find_equimap() {
   equimap=${EQUIMAP:-$jobs_dir/../build/equimap}
@@ -30,6 +41,8 @@ find_launcher() {
   fi
   launcher=(mpirun -n "$ranks" --bind-to none)
   [ -z "${EQUIMAP_MPIRUN:-}" ] || read -ra launcher <<<"${EQUIMAP_MPIRUN//%n/$ranks}"
+  # TERM goes to every process of a job. Of it mpirun ends the ranks, and itself, at once; deaf, it waits for their checkpoint.
+  ! env --block-signal=TERM true 2>/dev/null || launcher=(env --block-signal=TERM "${launcher[@]}")
 }
 
 # The value of an option in ARGS, or nothing.
@@ -68,17 +81,26 @@ with_checkpoint() {
 }
 
 run_and_forward() {
-  local child woken=yes
   "$@" &
   child=$!
-  trap 'woken=yes; say "told to stop (USR1)"; kill -USR1 $child 2>/dev/null' USR1
-  trap 'woken=yes; say "told to stop (TERM)"; kill -USR1 $child 2>/dev/null' TERM
+  [ -z "$told" ] || kill -USR1 $child
+  woken=yes
   while [ $woken = yes ]; do # a signal ends the waiting, not the program
     woken=no
     code=0
     wait $child || code=$?
   done
-  trap - USR1 TERM
+  child=''
+  # A launcher that a signal has ended returns no code of equimap's (-1, if bash has lost it to a signal in the same instant),
+  # and may end before the signal gets here: the run has been stopped all the same.
+  case $code in
+    0 | [2-7] | "$stopped") ;;
+    *)
+      sleep 1
+      [ -z "$told" ] || { say "the launcher ended with code $code"; code=$stopped; }
+      ;;
+  esac
+  trap '' USR1 TERM # what is left is short, and must not be cut short
 }
 
 # A run that has come to its end needs no checkpoint; one that has only come to -max_it (4) may be given more.
@@ -88,17 +110,21 @@ forget_checkpoint() {
   fi
 }
 
+withheld() { return 1; }
+
 finish() {
-  local most=${EQUIMAP_REQUEUES:-20}
+  local most=${EQUIMAP_REQUEUES:-20} reason
   if [ "$code" -ne $stopped ]; then
     forget_checkpoint
     say "ended with exit code $code"
+  elif reason=$(withheld); then
+    say "stopped; $reason"
   elif [ "$attempt" -ge "$most" ]; then
-    say "stopped with a checkpoint, and submitted again $attempt times already: enough (EQUIMAP_REQUEUES=$most);" \
+    say "stopped, and back in the queue $attempt times already: enough (EQUIMAP_REQUEUES=$most);" \
       "submit it by hand to go on" >&2
   else
     # Said before it is done: Slurm may end this script before requeue returns.
-    say "stopped with a checkpoint; back into the queue ($((attempt + 1)) of at most $most)"
+    say "stopped; back into the queue ($((attempt + 1)) of at most $most)"
     requeue || say "could not be put back into the queue; submit it by hand to go on" >&2
   fi
   exit "$code"
@@ -124,6 +150,23 @@ watch_the_clock() {
   [ -z "$limit" ] || [ -n "$(option_value -wall_time "${arguments[@]}")" ] || arguments+=(-wall_time "$limit")
 }
 
+# ---- Slurm
+# The job's name for scontrol. Of the last task of an array the plain number would mean the whole array.
+slurm_job() { echo "${SLURM_ARRAY_JOB_ID:+${SLURM_ARRAY_JOB_ID}_}${SLURM_ARRAY_TASK_ID:-$SLURM_JOB_ID}"; }
+slurm_requeue() { scontrol requeue "$(slurm_job)"; }
+# A job that is COMPLETING while its script still runs has been ended by Slurm: its time is up, somebody has put it back into
+# the queue (which Restarts counts at once), or it is cancelled. Slurm would requeue that, too.
+slurm_withheld() {
+  local job
+  job=$(scontrol --oneliner show job "$(slurm_job)")
+  [[ $job =~ " JobState="(COMPLETING|CANCELLED|PREEMPTED|REQUEUED|PENDING)" " && $job != *" Reason=TimeLimit "* ]] || return 1
+  if [[ $job =~ " Restarts="([0-9]+) && ${BASH_REMATCH[1]} -gt $attempt ]]; then
+    echo "Slurm has put it back into the queue"
+  else
+    echo "cancelled; submit it by hand to go on"
+  fi
+}
+
 # ---- PBS
 # The job's walltime in seconds; 0 if it cannot be told.
 pbs_seconds() {
@@ -132,6 +175,14 @@ pbs_seconds() {
   [[ $text =~ ^([0-9]+):([0-9]+):([0-9]+)$ ]] || { echo 0; return; }
   hours=${BASH_REMATCH[1]} minutes=${BASH_REMATCH[2]} seconds=${BASH_REMATCH[3]}
   echo $((10#$hours * 3600 + 10#$minutes * 60 + 10#$seconds))
+}
+# TERM comes of qdel, of a preemption, after which PBS runs the job again by itself (-r y), and when the time is up.
+pbs_withheld() {
+  local limit
+  [ "$told" = TERM ] || return 1
+  limit=$(pbs_seconds)
+  [ "$limit" -eq 0 ] || [ $((SECONDS + 60)) -lt "$limit" ] || return 1
+  echo "ended by PBS; if it was deleted, submit it by hand to go on"
 }
 # Submit SCRIPT with this job's environment and resources, which submit.py leaves in EQUIMAP_QSUB.
 pbs_submit_again() {

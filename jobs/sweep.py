@@ -31,7 +31,7 @@ import sys
 import time
 
 import sweep_report
-from sweep_table import MAP_WRITTEN, STOPPED, Store, TableError, find_mesh, find_preset, fingerprint, generated, read_table
+from sweep_table import MAP_WRITTEN, OWN, STOPPED, Store, TableError, find_mesh, find_preset, fingerprint, generated, read_table
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -145,6 +145,27 @@ def command_line(args, row, store, mesh):
     return command + row.options
 
 
+@contextlib.contextmanager
+def deaf_to_term():
+    """What is started here does not hear TERM. Batch systems send it to every process of a job, of which mpirun ends the ranks,
+    and itself, at once; deaf, it waits for their checkpoint. The ranks hear it, and mpirun hands on the USR1 of Stop."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
+
+
+def wait_for(stop):
+    """The exit code of the run at hand. One that was told to stop and has not ended by itself is stopped all the same: its
+    launcher was ended by the signal, which may get here a moment later."""
+    code = stop.child.wait()
+    if code not in OWN:
+        time.sleep(1)
+        return STOPPED if stop.asked else code
+    return code
+
+
 def run_row(args, row, store, mesh, stop):
     """Run a row to its end or to a stop, and note how it ended."""
     before = store.outcome()
@@ -162,11 +183,12 @@ def run_row(args, row, store, mesh, stop):
     with open(store.log_file, "a", encoding="utf-8") as log:
         log.write(f"$ {shlex.join(command)}\n")
         log.flush()
-        stop.child = subprocess.Popen(command, env=environment(row.threads), stdin=subprocess.DEVNULL, stdout=log,
-                                      stderr=subprocess.STDOUT, start_new_session=True)  # Ctrl-C is for us alone
+        with deaf_to_term() if launcher(row.ranks) else contextlib.nullcontext():
+            stop.child = subprocess.Popen(command, env=environment(row.threads), stdin=subprocess.DEVNULL, stdout=log,
+                                          stderr=subprocess.STDOUT, start_new_session=True)  # Ctrl-C is for us alone
         if stop.asked:
             stop.child.send_signal(signal.SIGUSR1)
-        code = stop.child.wait()
+        code = wait_for(stop)
     if code in MAP_WRITTEN:
         store.forget_checkpoint()
     store.write_outcome({**record, "exit_code": code, "wall_seconds": before["wall_seconds"] + time.monotonic() - begin})

@@ -25,6 +25,7 @@ COLUMNS = ("name", "command", "mesh", "preset", "options", "paper", "ranks", "th
 SUFFIXES = (".h5", ".obj", ".off", ".ply", ".msh", ".vtu", ".vtk", ".stl", ".gii")
 MAP_WRITTEN = (0, 4, 5)  # converged, stopped before, folds remain
 STOPPED = 75  # stopped on request with a checkpoint
+OWN = (0, 2, 3, 4, 5, 6, 7, STOPPED)  # told by the program itself; 1 is a launcher's as well
 NUMBER = r"-?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?"
 CONFIG = pathlib.Path(__file__).resolve().parent.parent / "config"
 

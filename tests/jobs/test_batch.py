@@ -11,50 +11,74 @@ import sys
 import tempfile
 import time
 
-JOBS = pathlib.Path(__file__).resolve().parents[2] / "jobs"
+HERE = pathlib.Path(__file__).resolve().parent
+JOBS = HERE.parents[1] / "jobs"
+sys.path.insert(0, str(HERE.parent / "support"))
+import slurm  # noqa: E402
+
+PATIENCE = 150  # seconds, for what takes a few on an idle machine
 ENDLESS = "method: rgd\nmax_it: 100000000\nenergy_rtol: 0\ncheckpoint_every: 100\n"
 COMMAND = "sphere head.obj -o {name}.h5 -options_file {name}.yaml"
 
 
-def script(name, *arguments, expected, until=None, **environment):
-    """Run a batch script as its system would; tell it to stop once the file `until` is there."""
-    process = subprocess.Popen([JOBS / name, *arguments], env={**os.environ, **environment}, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, text=True, start_new_session=True)
-    end = time.monotonic() + 60
-    while until and not os.path.exists(until):
-        assert process.poll() is None and time.monotonic() < end, process.communicate()[0]
-        time.sleep(.05)
-    if until:
-        process.send_signal(signal.SIGTERM)
-    said = process.communicate(timeout=90)[0]
-    assert process.returncode == expected, (name, process.returncode, said)
-    return said
+def stamp(path):
+    return os.stat(path).st_mtime_ns if path and os.path.exists(path) else None
+
+
+def script(name, *arguments, expected, until=None, told=signal.SIGTERM, **environment):
+    """Run a batch script as its system would; tell it, and the launcher, to stop once the file `until` has been written."""
+    before = stamp(until)
+    with open("said", "w+", encoding="utf-8") as said:
+        process = subprocess.Popen([JOBS / name, *arguments], env={**os.environ, **environment}, stdout=said,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+        end = time.monotonic() + PATIENCE
+        try:
+            while until and stamp(until) in (None, before) and process.poll() is None and time.monotonic() < end:
+                time.sleep(.05)
+            if until:
+                os.killpg(process.pid, told)
+            code = process.wait(max(1, end - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            code = "does not end"
+            for pid in (*slurm.descendants(process.pid), process.pid):
+                os.kill(pid, signal.SIGKILL)
+        said.seek(0)
+        text = said.read()
+    assert code == expected, (name, code, text)
+    return text
 
 
 def write_options(name, text=ENDLESS):
     pathlib.Path(f"{name}.yaml").write_text(text)
 
 
-def stand_in(name):
-    """A command that notes how it was called, and some of its environment."""
+def stand_in(name, does):
+    """A command that the batch scripts call."""
     path = pathlib.Path("bin") / name
     path.parent.mkdir(exist_ok=True)
-    path.write_text(f'#!/bin/sh\necho "$0 $*" >>{name}.log\nenv | grep ^EQUIMAP_ >>{name}.log\necho 4711\n')
+    path.write_text(f"#!/bin/sh\n{does}\n")
     path.chmod(0o755)
 
 
 def check_pbs():
-    """Stopped by TERM or by its own clock, the job submits itself again with all that it was given."""
+    """Stopped on request, when its time is up or by its own clock, the job submits itself again with all that it was given;
+    deleted, it does not."""
     write_options("pbs")
     given = {"EQUIMAP_COMMAND": COMMAND.format(name="pbs"), "EQUIMAP_JOBS": str(JOBS), "PBS_JOBID": "1.server",
              "EQUIMAP_QSUB": "-N equimap -l select=1:ncpus=1:mpiprocs=1", "EQUIMAP_RANKS": "1"}
-    said = script("run.pbs", expected=75, until="pbs.checkpoint.h5", **given)
-    assert "told to stop (TERM)" in said and "back into the queue (1 of at most 20)" in said, said
+    # to every process of the job, two ranks and their mpirun among them
+    said = script("run.pbs", expected=75, until="pbs.checkpoint.h5", **{**given, "EQUIMAP_RANKS": "2"})
+    assert "stopped on request" in said and "told to stop (TERM)" in said and "stopped; ended by PBS" in said, said
+    assert not os.path.exists("qsub.log")
+    said = script("run.pbs", expected=75, until="pbs.checkpoint.h5", told=signal.SIGUSR1, **given)
+    assert "told to stop (USR1)" in said and "back into the queue (1 of at most 20)" in said, said
     noted = pathlib.Path("qsub.log").read_text()
     assert "-V -N equimap -l select=1:ncpus=1:mpiprocs=1" in noted and "EQUIMAP_ATTEMPT=1" in noted, noted
     said = script("run.pbs", expected=75, EQUIMAP_ATTEMPT="1", EQUIMAP_WALLTIME="00:00:03", EQUIMAP_REQUEUES="1", **given)
     assert "going on from pbs.checkpoint.h5" in said and "stopped by -wall_time 3" in said, said
     assert "enough (EQUIMAP_REQUEUES=1)" in said and pathlib.Path("qsub.log").read_text() == noted, said
+    said = script("run.pbs", expected=75, until="pbs.checkpoint.h5", EQUIMAP_WALLTIME="00:01:00", **given)
+    assert "told to stop (TERM)" in said and "back into the queue (1 of at most 20)" in said, said
     write_options("pbs", ENDLESS.replace("100000000", "10"))
     said = script("run.pbs", expected=4, EQUIMAP_ATTEMPT="2", **given)
     assert "restart from " in said and "ended with exit code 4" in said, said
@@ -62,6 +86,17 @@ def check_pbs():
     script("sweep.pbs", expected=0, PBS_ARRAY_INDEX="2", EQUIMAP_TABLE="t.csv", EQUIMAP_SWEEP="--results pbs-swept",
            EQUIMAP_JOBS=str(JOBS), PBS_JOBID="2[2].server")
     assert os.listdir("pbs-swept") == ["two"]
+
+
+def check_launcher():
+    """A launcher that is ended by the request returns a code of its own: the run has stopped all the same, and only then."""
+    write_options("frail")
+    given = {"EQUIMAP_COMMAND": COMMAND.format(name="frail"), "EQUIMAP_JOBS": str(JOBS), "PBS_JOBID": "3.server"}
+    stand_in("frail", 'trap "kill -9 \\$!; sleep .2; exit 1" USR1; "$@" & wait')
+    said = script("run.pbs", expected=75, until="frail.checkpoint.h5", told=signal.SIGUSR1, EQUIMAP_MPIRUN="frail", **given)
+    assert "launcher ended with code 1" in said and "back into the queue" in said, said
+    said = script("run.pbs", expected=1, EQUIMAP_MPIRUN="false", **given)
+    assert "ended with exit code 1" in said and "back into the queue" not in said, said
 
 
 def check_lsf():
@@ -138,9 +173,10 @@ def check_submit():
 
 def main(program):
     subprocess.run([program, "generate", "head", "-n", "600", "-o", "head.obj"], check=True, stdout=subprocess.DEVNULL)
-    stand_in("qsub")
+    stand_in("qsub", 'echo "$0 $*" >>qsub.log; env | grep ^EQUIMAP_ >>qsub.log; echo 4711')
     os.environ.update(EQUIMAP=program, PATH=f"{os.getcwd()}/bin:{os.environ['PATH']}")
     check_pbs()
+    check_launcher()
     check_lsf()
     check_submit()
     print("batch: PBS and LSF stopped, gone on with and capped; submit.py says what it should and refuses what it must")

@@ -13,9 +13,13 @@ import sys
 import tempfile
 import time
 
-JOBS = pathlib.Path(__file__).resolve().parents[2] / "jobs"
-sys.path.insert(0, str(JOBS))
+HERE = pathlib.Path(__file__).resolve().parent
+JOBS = HERE.parents[1] / "jobs"
+sys.path[:0] = [str(JOBS), str(HERE.parent / "support")]
+import slurm  # noqa: E402
 import sweep_table  # noqa: E402
+
+PATIENCE = 150  # seconds, for what takes a few on an idle machine
 
 HEADER = "name,command,mesh,preset,options,paper,ranks,threads,against\n"
 ENDLESS = "method: rgd\nmax_it: 1000000\nenergy_rtol: 0\ncheckpoint_every: 100\n"
@@ -23,22 +27,24 @@ ENDLESS = "method: rgd\nmax_it: 1000000\nenergy_rtol: 0\ncheckpoint_every: 100\n
 
 def sweep(*arguments, expected=0, **environment):
     done = subprocess.run([sys.executable, JOBS / "sweep.py", *map(str, arguments)], env={**os.environ, **environment},
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120, check=False)
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=PATIENCE, check=False)
     assert done.returncode == expected, (arguments, done.returncode, done.stdout)
     return done.stdout
 
 
-def start(table):
-    return subprocess.Popen([sys.executable, JOBS / "sweep.py", table], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                            text=True, start_new_session=True)
+def start(table, **environment):
+    return subprocess.Popen([sys.executable, JOBS / "sweep.py", table], env={**os.environ, **environment},
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
 
 
 def wait_for(path, process):
     """Until a run that goes on for ever has come as far as a checkpoint."""
-    end = time.monotonic() + 60
-    while not path.exists():
-        assert process.poll() is None and time.monotonic() < end, process.communicate()[0]
+    end = time.monotonic() + PATIENCE
+    while not path.exists() and process.poll() is None and time.monotonic() < end:
         time.sleep(.05)
+    if not path.exists():
+        end_all(process)
+        raise AssertionError(process.communicate()[0])
 
 
 def lines_of(name):
@@ -93,20 +99,21 @@ def check_change():
     assert "2 finished" in sweep("t.csv", "--list")
 
 
-def check_stop(kind, code):
-    """Stopped, or killed, in the middle of a row: the row goes on from its checkpoint when the sweep is started again."""
+def check_stop(kind, code, ranks=1, everywhere=False):
+    """Stopped, or killed, in the middle of a row: the row goes on from its checkpoint when the sweep is started again.
+    Batch systems signal every process of a job, the sweep's own the last here."""
     folder = pathlib.Path("sweep-s/long")
     pathlib.Path("s.yaml").write_text(ENDLESS)
-    write_table("s.csv", "long,sphere,head:600,,-options_file s.yaml,,1,1,", "next,disk,hills:400,,-max_it 2,,1,1,")
+    write_table("s.csv", f"long,sphere,head:600,,-options_file s.yaml,,{ranks},1,", "next,disk,hills:400,,-max_it 2,,1,1,")
     process = start("s.csv")
     wait_for(folder / "checkpoint.h5", process)
     if kind == signal.SIGKILL:
-        os.killpg(process.pid, kind)
-        program = sweep_table.read_json(folder / "outcome.json")["command"][0]
-        end_runs_of(program, folder)
-    else:
+        end_all(process)
+    for pid in slurm.descendants(process.pid) if everywhere else ():
+        os.kill(pid, kind)
+    if kind != signal.SIGKILL:
         process.send_signal(kind)
-    said = process.communicate(timeout=60)[0]
+    said = process.communicate(timeout=PATIENCE)[0]
     assert process.returncode == code, (process.returncode, said)
     assert "row 2, next: begins" not in said and sweep_table.read_json(folder / "outcome.json")["exit_code"] == (
         75 if code == 75 else None), said
@@ -119,15 +126,25 @@ def check_stop(kind, code):
     shutil.rmtree("sweep-s")
 
 
-def end_runs_of(program, folder):
-    """The program has a session of its own: what a killed sweep leaves behind is ended here."""
-    for entry in pathlib.Path("/proc").iterdir():
-        try:
-            words = (entry / "cmdline").read_bytes().split(b"\0") if entry.name.isdigit() else []
-        except OSError:
-            continue
-        if words and words[0].decode() == program and any(str(folder).encode() in word for word in words):
-            os.kill(int(entry.name), signal.SIGKILL)
+def end_all(process):
+    """Kill a sweep and what it has begun, which has a session of its own and would outlive it."""
+    begun = slurm.descendants(process.pid)
+    for pid in (process.pid, *begun):
+        os.kill(pid, signal.SIGKILL)
+
+
+def check_launcher():
+    """A launcher that is ended by the request to stop returns a code of its own: the row is interrupted, it has not failed."""
+    launcher = pathlib.Path("frail")
+    launcher.write_text('#!/bin/sh\ntrap "kill -9 \\$!; exit 1" USR1\n"$@" & wait\n')
+    launcher.chmod(0o755)
+    write_table("f.csv", "long,sphere,head:600,,-options_file s.yaml,,1,1,")
+    pathlib.Path("s.yaml").write_text(ENDLESS)
+    process = start("f.csv", EQUIMAP_MPIRUN=str(launcher.resolve()))
+    wait_for(pathlib.Path("sweep-f/long/checkpoint.h5"), process)
+    process.send_signal(signal.SIGUSR1)
+    said = process.communicate(timeout=PATIENCE)[0]
+    assert process.returncode == 75 and "interrupted: row 1" in said, (process.returncode, said)
 
 
 def check_mistakes():
@@ -169,7 +186,7 @@ def check_jube():
     environment = {**os.environ, "EQUIMAP_TABLE": str(here / "j.csv"), "EQUIMAP_RESULTS": str(here / "sweep-j"),
                    "EQUIMAP_MESHES": str(here)}
     done = subprocess.run(["jube", "run", JOBS / "sweep.xml", "-o", here / "jube-runs", "-r", "--hide-animation"], env=environment,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120, check=False)
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=PATIENCE, check=False)
     assert done.returncode == 0 and "not converged" in done.stdout and "no mesh" in done.stdout, done.stdout
     assert lines_of("sweep-j/sweep.csv")[0]["name"] == "one"
 
@@ -177,8 +194,11 @@ def check_jube():
 def main():
     check_run()
     check_change()
-    for kind, code in ((signal.SIGUSR1, 75), (signal.SIGINT, 75), (signal.SIGKILL, -signal.SIGKILL)):
-        check_stop(kind, code)
+    check_stop(signal.SIGUSR1, 75)
+    check_stop(signal.SIGINT, 75)
+    check_stop(signal.SIGTERM, 75, ranks=2, everywhere=True)
+    check_stop(signal.SIGKILL, -signal.SIGKILL)
+    check_launcher()
     check_mistakes()
     check_tables()
     check_jube()

@@ -11,6 +11,7 @@ import ctypes
 import json
 import os
 import pathlib
+import random
 import shutil
 import signal
 import socket
@@ -20,6 +21,10 @@ import time
 
 NEEDED = ("munged", "mungekey", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol")
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
+PATIENCE = 150  # seconds, for anything that takes a few on an idle machine
+
+# The timeouts are those of a busy machine. A job has KillWait seconds between the TERM that ends it and the KILL. Jobs of the
+# partition `low` are warned and have GraceTime seconds before they are preempted, those of `lowest` have nothing.
 
 CONFIGURATION = """\
 ClusterName=equimap
@@ -44,15 +49,20 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 MpiDefault=none
 ReturnToService=2
-KillWait=20
+KillWait=60
+MessageTimeout=60
+TCPTimeout=20
+BatchStartTimeout=120
 MinJobAge=600
 MaxArraySize=1000
 PreemptType=preempt/partition_prio
 PreemptMode=REQUEUE
+SlurmctldParameters=preempt_send_user_signal
 SchedulerParameters=sched_interval=1,bf_interval=1,sched_min_interval=0
 SlurmdParameters=config_overrides
 NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} State=UNKNOWN
-PartitionName=low Nodes={host} MaxTime=60 PriorityTier=1 GraceTime=20 PreemptMode=REQUEUE State=UP
+PartitionName=low Nodes={host} MaxTime=60 PriorityTier=1 GraceTime=300 PreemptMode=REQUEUE State=UP
+PartitionName=lowest Nodes={host} MaxTime=60 PriorityTier=1 GraceTime=0 PreemptMode=REQUEUE State=UP
 PartitionName=steady Nodes={host} Default=YES MaxTime=60 PriorityTier=2 PreemptMode=OFF State=UP
 PartitionName=high Nodes={host} MaxTime=60 PriorityTier=2 PreemptMode=OFF State=UP
 """
@@ -65,14 +75,14 @@ def missing():
 
 
 def free_ports(count):
-    """Ports of the loopback that nobody listens on."""
-    sockets = [socket.socket() for _ in range(count)]
-    for one in sockets:
-        one.bind(("127.0.0.1", 0))
-    ports = [one.getsockname()[1] for one in sockets]
-    for one in sockets:
-        one.close()
-    return ports
+    """Ports of the loopback that nobody listens on, below those that the system gives to connections."""
+    found = []
+    while len(found) < count:
+        port = random.randrange(16000, 32000)
+        with socket.socket() as one:
+            if port not in found and one.connect_ex(("127.0.0.1", port)):
+                found.append(port)
+    return found
 
 
 class Cluster:
@@ -96,7 +106,7 @@ class Cluster:
         self.guard = subprocess.Popen([sys.executable, __file__, str(self.folder)], stdin=subprocess.PIPE,
                                       env=self.environment, start_new_session=True)
         try:
-            self.await_true(self.is_idle, 40, "the node does not come up")
+            self.await_true(self.is_idle, "the node does not come up")
         except BaseException:
             self.__exit__()
             raise
@@ -104,7 +114,7 @@ class Cluster:
 
     def __exit__(self, *_):
         self.guard.stdin.close()
-        self.guard.wait(timeout=60)
+        self.guard.wait(timeout=PATIENCE)
 
     def is_idle(self):
         if self.guard.poll() is not None:
@@ -114,33 +124,44 @@ class Cluster:
     def logs(self):
         return "\n".join(f"--- {log.name}\n{log.read_text(errors='replace')[-3000:]}" for log in self.folder.glob("*.log"))
 
-    def await_true(self, condition, seconds, complaint):
+    def await_true(self, condition, complaint):
         """Wait until condition() holds."""
-        end = time.monotonic() + seconds
+        end = time.monotonic() + PATIENCE
         while not condition():
             if time.monotonic() > end:
                 raise AssertionError(f"{self.logs()}\n{complaint() if callable(complaint) else complaint}")
             time.sleep(.2)
 
-    def run(self, *command, check=True, **options):
-        done = subprocess.run([str(word) for word in command], env=self.environment, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True, **options)
+    def run(self, *command, check=True, environment=None):
+        done = subprocess.run([str(word) for word in command], env={**self.environment, **(environment or {})},
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         assert not check or done.returncode == 0, f"{command}: exit code {done.returncode}\n{done.stdout}{self.logs()}"
         return done
 
-    def submit(self, *arguments, **options):
+    def submit(self, *arguments, **environment):
         """sbatch; the job's number."""
-        return self.run("sbatch", "--parsable", *arguments, **options).stdout.split(";")[0].strip()
+        return self.run("sbatch", "--parsable", *arguments, environment=environment).stdout.split(";")[0].strip()
 
     def job(self, number):
         """What scontrol knows of a job, key by key."""
         shown = self.run("scontrol", "--oneliner", "show", "job", number).stdout
         return dict(word.split("=", 1) for word in shown.split() if "=" in word)
 
-    def wait(self, number, seconds, states=("COMPLETED",)):
+    def wait(self, number, *states):
         """Wait until the job is in one of the states."""
-        self.await_true(lambda: self.job(number)["JobState"] in states, seconds, f"job {number} is not {states}")
+        self.await_true(lambda: self.job(number)["JobState"] in states,
+                        lambda: f"job {number} is not {' or '.join(states)}\n{self.run('scontrol', 'show', 'job', number).stdout}")
         return self.job(number)
+
+    def wait_for_requeue(self, number, times=1):
+        """Wait until the job is back in the queue, its processes gone."""
+        self.await_true(lambda: self.job(number)["Restarts"] == str(times), f"job {number} does not go back into the queue")
+        self.wait(number, "PENDING", "RUNNING", "COMPLETED", "FAILED")
+
+    def release(self, number):
+        """Spare a job that is back in the queue the two minutes that Slurm keeps it there, unless they are over."""
+        time.sleep(2)  # a node takes no job that was sent in the second of its last end
+        self.run("scontrol", "update", f"JobId={number}", "StartTime=now", check=False)
 
 
 def descendants(root):
