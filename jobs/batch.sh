@@ -106,7 +106,7 @@ run_and_forward() {
 # A run that has come to its end needs no checkpoint; one that has only come to -max_it (4) may be given more.
 forget_checkpoint() {
   if [ "$code" -eq 0 ] && [ -n "${checkpoint:-}" ]; then
-    rm -f "$checkpoint" "$checkpoint.previous" "$checkpoint".[0-9]* "${checkpoint%.h5}.mesh.h5"
+    rm -f "$checkpoint" "$checkpoint.previous" "$checkpoint".[0-9]* "${checkpoint%.h5}"{,.a,.b}.mesh.h5
   fi
 }
 

@@ -26,36 +26,6 @@ PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmSta
 PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
 
-/* How a map command reads its mesh. */
-typedef struct {
-  char mesh[PETSC_MAX_PATH_LEN]; /* the file; EqmInputChoose fills it in */
-  char copy[PETSC_MAX_PATH_LEN]; /* the copy of it beside the checkpoint, where that is needed */
-  PetscBool is_copy;             /* `mesh` is that copy */
-  const char *checkpoint;        /* leave a copy for the checkpoint of that name; NULL: none */
-  PetscBool resumed;             /* the run goes on from a checkpoint */
-  const char *density;           /* a file with a weight per cell, or NULL */
-  PetscReal noise;               /* that vertices move along their normals; 0: none */
-  PetscInt seed;                 /* of the noise */
-  PetscBool repair;              /* mend what is safe to mend */
-  PetscBool quiet;               /* print neither what was mended nor warnings */
-} EqmInputOptions;
-
-/* The mesh that a map command works on. */
-typedef struct {
-  EqmSoup given;  /* as the file has it, with noise if asked */
-  EqmSoup mapped; /* mended, or `given` itself where nothing was mended */
-  PetscInt
-      *parent; /* per cell of the slab of `mapped` the cell of `given` it comes from; NULL where they are the same */
-  EqmRepair repair; /* what was mended */
-} EqmInput;
-
-PETSC_INTERN PetscErrorCode EqmInputChoose(const char *named, const char *restart, EqmInputOptions *input);
-PETSC_INTERN PetscErrorCode EqmInputRead(const char *command, const EqmInputOptions *options, EqmLedger ledger,
-                                         EqmInput *input);
-PETSC_INTERN PetscErrorCode EqmInputTakeMap(const EqmInput *input, EqmMesh mesh, EqmMap found, EqmMap *map);
-PETSC_INTERN PetscErrorCode EqmInputDestroy(EqmInput *input);
-PETSC_INTERN PetscErrorCode EqmPrintRepair(const EqmRepair *repair);
-
 PETSC_INTERN PetscErrorCode EqmCheckOutput(const char *mesh, const char *files);
 PETSC_INTERN PetscErrorCode EqmSweepOutput(const char *files);
 PETSC_INTERN PetscErrorCode EqmCloseBooks(EqmLedger ledger, EqmMap map);

@@ -1,6 +1,7 @@
 /* equimap check MESH: what the mesh is, what is wrong with it, what each command would say. */
 #include "app.h"
 #include "base/atomicfile.h"
+#include "intake/intake.h"
 #include <cjson/cJSON.h>
 
 #define EQM_NUM_TARGETS 5
@@ -252,7 +253,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
   }
   PetscCall(EqmSoupDiagnose(soup, &report.diagnosis));
   PetscCall(PrintCounts(&report));
-  if (report.repaired) PetscCall(EqmPrintRepair(&report.repair));
+  if (report.repaired) PetscCall(EqmPrintRepair(PETSC_COMM_WORLD, NULL, &report.repair));
   PetscCall(PrintVerdicts(&report));
   if (options.summary[0]) PetscCall(WriteSummary(&report, options.summary));
   if (options.out[0]) PetscCall(EqmSoupWrite(soup, options.out));

@@ -1,13 +1,17 @@
 /* equimap disk | square | sphere MESH -o OUT: read, diagnose, distribute, minimise, measure, write. */
 #include "app.h"
 #include "base/stop.h"
+#include "intake/intake.h"
+#include "method/checkpoint.h"
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
       density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN], checkpoint[PETSC_MAX_PATH_LEN],
       restart[PETSC_MAX_PATH_LEN];
   PetscBool has_output, has_summary, has_history, has_density, has_histogram, has_checkpoint, has_restart;
-  EqmInputOptions input;
+  EqmIntakeOptions input;
+  EqmStopFile stop_file;
+  char usage[PETSC_MAX_PATH_LEN];
   PetscInt hessian_eigenvalues;
   PetscBool dry_run;
 } MapOptions;
@@ -74,8 +78,11 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
             "-hessian_eigenvalues needs SLEPc (Debian: slepc-dev); install it and build equimap again");
   }
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
-  PetscCall(EqmInputChoose(line->num_arguments ? line->argument[0] : NULL,
-                           options->has_restart ? options->restart : NULL, &options->input));
+  PetscCall(EqmIntakeChoose(PETSC_COMM_WORLD, line->num_arguments ? line->argument[0] : NULL,
+                            options->has_restart ? options->restart : NULL, &options->input));
+  PetscCall(PetscSNPrintf(options->usage, sizeof(options->usage), "equimap %s %s", line->command, mesh));
+  options->input.usage = options->usage;
+  options->input.target = line->command;
   PetscCall(EqmCheckOutput(mesh, options->output));
   if (options->has_summary) PetscCall(EqmCheckOutput(mesh, options->summary));
   if (options->has_history) PetscCall(EqmCheckOutput(mesh, options->history));
@@ -171,7 +178,7 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
 
 /* From the mesh that is mapped to the map of the mesh that was given. */
 static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *options, EqmLedger ledger,
-                            const EqmInput *input, EqmStatus *status)
+                            const EqmIntake *input, EqmStatus *status)
 {
   EqmMesh mesh;
   EqmSolver solver;
@@ -183,10 +190,11 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DISTRIBUTE));
   PetscCall(EqmSolverCreate(mesh, line->command, &solver));
   PetscCall(EqmSolverSetFromOptions(solver));
+  PetscCall(EqmSolverSetStopFile(solver, &options->stop_file));
   PetscCall(EqmSolverSolve(solver));
   PetscCall(EqmSolverStraighten(solver, input->mapped));
   PetscCall(EqmSolverGetMap(solver, input->mapped, &found));
-  PetscCall(EqmInputTakeMap(input, mesh, found, &map));
+  PetscCall(EqmIntakeTakeMap(input, mesh, found, &map));
   PetscCall(TakeEigenvalues(options, ledger, solver, map));
   PetscCall(Write(options, ledger, map));
   PetscCall(PrintResult(options, map));
@@ -199,12 +207,12 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
 }
 
 /* Run a map command, `equimap disk` and its like. Collective on PETSC_COMM_WORLD. The status is the map's. Errors:
-   EQM_ERR_USAGE, and those of EqmInputRead, EqmSolverSetFromOptions and EqmMapWrite. */
+   EQM_ERR_USAGE, and those of EqmIntakeRead, EqmSolverSetFromOptions and EqmMapWrite. */
 PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
 {
   MapOptions options = {0};
   EqmLedger ledger;
-  EqmInput input;
+  EqmIntake input;
 
   PetscFunctionBegin;
   PetscCall(AskOptions(&options));
@@ -214,8 +222,9 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckArguments(line, &options));
   EqmStopCatchSignals();
+  if (options.has_checkpoint) PetscCall(EqmStopWatchFile(PETSC_COMM_WORLD, options.checkpoint, &options.stop_file));
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
-  PetscCall(EqmInputRead(line->command, &options.input, ledger, &input));
+  PetscCall(EqmIntakeRead(PETSC_COMM_WORLD, &options.input, ledger, &input));
   if (options.dry_run) {
     PetscCall(PetscPrintf(PETSC_COMM_WORLD,
                           "%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells: equimap %s can begin\n",
@@ -223,7 +232,7 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   } else {
     PetscCall(Solve(line, &options, ledger, &input, status));
   }
-  PetscCall(EqmInputDestroy(&input));
+  PetscCall(EqmIntakeDestroy(&input));
   PetscCall(EqmLedgerDestroy(&ledger));
   PetscFunctionReturn(0);
 }

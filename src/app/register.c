@@ -3,8 +3,9 @@
 #include "base/stop.h"
 
 typedef struct {
-  char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary, has_history, dry_run;
+  char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
+      checkpoint[PETSC_MAX_PATH_LEN];
+  PetscBool has_output, has_summary, has_history, has_checkpoint, has_restart, dry_run;
 } RegisterOptions;
 
 static const char manual[] = "\n"
@@ -30,6 +31,9 @@ static PetscErrorCode AskOptions(RegisterOptions *options)
   PetscCall(PetscOptionsBool("-dry_run", "look at options, meshes and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-checkpoint", options->checkpoint, sizeof(options->checkpoint),
+                                  &options->has_checkpoint)); /* the solver lists these */
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-restart", &options->has_restart));
   PetscFunctionReturn(0);
 }
 
@@ -37,20 +41,27 @@ static PetscErrorCode AskOptions(RegisterOptions *options)
 static PetscErrorCode CheckArguments(const EqmCommandLine *line, const RegisterOptions *options)
 {
   PetscFunctionBegin;
-  if (line->num_arguments != 2)
+  if (line->num_arguments != 2 && !(line->num_arguments == 0 && options->has_restart))
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
             "register wants two meshes or results, %d given; usage: equimap register A B -o OUT.h5",
             line->num_arguments);
   if (!options->has_output) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "no output named; add -o OUT.h5");
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
   for (int k = 0; k < 2; k++) {
-    PetscCall(EqmCheckOutput(line->argument[k], options->output));
-    if (options->has_summary) PetscCall(EqmCheckOutput(line->argument[k], options->summary));
-    if (options->has_history) PetscCall(EqmCheckOutput(line->argument[k], options->history));
+    const char *const mesh = line->num_arguments ? line->argument[k] : "";
+    PetscCall(EqmCheckOutput(mesh, options->output));
+    if (options->has_summary) PetscCall(EqmCheckOutput(mesh, options->summary));
+    if (options->has_history) PetscCall(EqmCheckOutput(mesh, options->history));
+    if (options->has_checkpoint) PetscCall(EqmCheckOutput(mesh, options->checkpoint));
   }
+  if (!options->has_checkpoint) PetscFunctionReturn(0);
+  PetscCall(EqmSweepOutput(options->output));
+  if (options->has_summary) PetscCall(EqmSweepOutput(options->summary));
+  if (options->has_history) PetscCall(EqmSweepOutput(options->history));
   PetscFunctionReturn(0);
 }
 
+/* Of a run that was stopped there is the checkpoint, and no result. */
 static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration)
 {
   EqmMap map;
@@ -59,8 +70,10 @@ static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, Eq
   PetscCall(EqmRegistrationGetMap(registration, &map));
   PetscCall(EqmCloseBooks(ledger, map));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
-  PetscCall(EqmMapWrite(map, options->output));
-  PetscCall(EqmRegistrationWriteFrames(registration, options->output));
+  if (map->status != EQM_STATUS_STOPPED) {
+    PetscCall(EqmMapWrite(map, options->output));
+    PetscCall(EqmRegistrationWriteFrames(registration, options->output));
+  }
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
   PetscCall(EqmCloseBooks(ledger, map));
@@ -77,12 +90,11 @@ static PetscErrorCode Run(const RegisterOptions *options, EqmLedger ledger, EqmR
   PetscFunctionBegin;
   PetscCall(EqmRegistrationSolve(registration));
   PetscCall(EqmRegistrationGetStatus(registration, status, &message));
-  if (*status == EQM_STATUS_STOPPED) {
+  PetscCall(Write(options, ledger, registration));
+  if (*status == EQM_STATUS_STOPPED)
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n", EqmStatusName(*status), message));
-  } else {
-    PetscCall(Write(options, ledger, registration));
+  else
     PetscCall(EqmRegistrationView(registration));
-  }
   PetscFunctionReturn(0);
 }
 
@@ -105,7 +117,7 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   PetscCall(EqmRegistrationCreate(PETSC_COMM_WORLD, ledger, &registration));
   PetscCall(EqmRegistrationSetFromOptions(registration));
-  PetscCall(EqmRegistrationRead(registration, line->argument[0], line->argument[1]));
+  PetscCall(EqmRegistrationRead(registration, line->argument[0], line->argument[1])); /* NULL where not named */
   if (options.dry_run) {
     PetscCall(EqmRegistrationViewInput(registration));
   } else {

@@ -16,8 +16,10 @@ PetscErrorCode EqmCheckpointBegin(EqmSolver solver)
   solver->checkpoints.written = -1;
   if (!file[0]) PetscFunctionReturn(0);
   if (solver->mesh->rank == 0) EqmAtomicSweep(file);
-  PetscCall(EqmStopWatchFile(solver->comm, file, &solver->checkpoints.stop_file));
-  PetscCall(EqmKeptMeshName(file, copy, sizeof(copy)));
+  if (!solver->checkpoints.stop_file.name[0])
+    PetscCall(EqmStopWatchFile(solver->comm, file, &solver->checkpoints.stop_file));
+  if (solver->checkpoints.kept_mesh[0]) PetscFunctionReturn(0);
+  PetscCall(EqmKeptMeshName(file, NULL, copy, sizeof(copy)));
   PetscCall(EqmFileIsThere(solver->comm, copy, &kept));
   if (kept) PetscCall(PetscStrncpy(solver->checkpoints.kept_mesh, basename(copy), sizeof(copy)));
   PetscFunctionReturn(0);

@@ -10,8 +10,8 @@
 typedef struct {
   EqmState open;                      /* the one that is being loaded, between map and method; else NULL */
   EqmState writing;                   /* the last one, while the disk may still be at work; else NULL */
-  EqmStopFile stop_file;              /* beside the checkpoint */
-  char kept_mesh[PETSC_MAX_PATH_LEN]; /* the run's copy of its mesh, likewise; empty: there is none */
+  EqmStopFile stop_file;              /* beside the checkpoint; of a run that has begun before, it has a name already */
+  char kept_mesh[PETSC_MAX_PATH_LEN]; /* the run's copies of its meshes, likewise; empty: there is none */
   PetscReal cost, last;               /* seconds that the last checkpoint took, and when it was written */
   PetscInt written;                   /* iteration of the last one that was written; -1: none */
   PetscInt resumed;                   /* iteration that this run began with */
@@ -30,6 +30,8 @@ PETSC_INTERN PetscErrorCode EqmCheckpointVisitMethod(EqmState state, EqmSolver s
    -checkpoint and -restart get .STAGE behind. A later stage whose checkpoint is not there begins anew. Call after
    EqmSolverSetFromOptions. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage);
+/* Watch for the file STOP that has been watched for since the run began. Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolverSetStopFile(EqmSolver solver, const EqmStopFile *watch);
 /* Get ready: leftovers of killed runs are removed, a file STOP is watched for. Collective. */
 PETSC_INTERN PetscErrorCode EqmCheckpointBegin(EqmSolver solver);
 /* With -restart: find the newest checkpoint that is sound, and take map and history from it, in place of a start.

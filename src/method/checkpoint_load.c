@@ -22,6 +22,13 @@ PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmSolverSetStopFile(EqmSolver solver, const EqmStopFile *watch)
+{
+  PetscFunctionBegin;
+  solver->checkpoints.stop_file = *watch;
+  PetscFunctionReturn(0);
+}
+
 /* The newer of the two checkpoints that is sound. */
 static PetscErrorCode OpenNewest(EqmSolver solver, char *name, size_t length)
 {

@@ -41,8 +41,9 @@ static PetscErrorCode MinimiseOnce(EqmRegistration r, EqmSide *side, const Petsc
   PetscCall(EqmRegistrationMinimise(r, solver));
   PetscCall(EqmSolverLandmarksReached(solver, reached));
   PetscCall(PetscArraycpy(side->x, solver->place.x, r->dim * side->mesh->num_local));
+  if (side->read == side->map) side->read = NULL;
   PetscCall(EqmMapDestroy(&side->map));
-  PetscCall(EqmSolverGetMap(solver, side->soup, &side->map));
+  PetscCall(EqmSolverGetMap(solver, side->intake.mapped, &side->map));
   PetscCall(EqmSolverDestroy(&solver));
   PetscFunctionReturn(0);
 }

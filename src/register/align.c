@@ -240,8 +240,6 @@ PetscErrorCode EqmAlign(EqmRegistration r)
 
   PetscFunctionBegin;
   if (r->set.align == EQM_ALIGN_NONE) PetscFunctionReturn(0);
-  if (r->set.align == EQM_ALIGN_POSE && r->dim == 2)
-    EqmFail(r->comm, EQM_ERR_USAGE, "-align pose is for the sphere and the ball: a disk has no pose in space");
   if (r->set.align == EQM_ALIGN_POSE)
     PetscCall(Pose(r, rotation));
   else

@@ -32,20 +32,23 @@ static PetscErrorCode TakePlaces(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* Locations, points, and the map that holds them. Collective. */
+/* Locations, points, and the map of A that holds them: of the mended mesh if there is one. Collective. */
 PetscErrorCode EqmCompose(EqmRegistration r)
 {
+  const EqmSoup soup = r->a.intake.mapped;
+
   PetscFunctionBegin;
   PetscCall(EqmPhaseBegin(r->ledger, EQM_PHASE_MEASURE));
   if (r->bare) {
     PetscCall(TakePlaces(r));
   } else {
     PetscCall(Carry(r, &r->a, &r->b, &r->forward, &r->image));
-    PetscCall(Carry(r, &r->b, &r->a, &r->inverse, &r->inverse_image));
+    PetscCall(EqmPause(r, PETSC_TRUE));
+    if (r->status != EQM_STATUS_STOPPED) PetscCall(Carry(r, &r->b, &r->a, &r->inverse, &r->inverse_image));
   }
-  PetscCall(EqmMapCreate(r->a.soup, 3, &r->map));
-  r->map->in_space = (PetscBool)!r->bare;
-  PetscCall(EqmMeshVerticesToInput(r->a.mesh, r->a.soup, 3, r->image, r->map->coordinates));
+  PetscCall(EqmMapCreate(soup, 3, &r->found));
+  r->found->in_space = (PetscBool)!r->bare;
+  PetscCall(EqmMeshVerticesToInput(r->a.mesh, soup, 3, r->image, r->found->coordinates));
   PetscCall(EqmPhaseEnd(r->ledger, EQM_PHASE_MEASURE));
   PetscFunctionReturn(0);
 }
@@ -117,15 +120,16 @@ PetscErrorCode EqmMeasureCorrespondence(EqmRegistration r)
   EqmMap measured;
 
   PetscFunctionBegin;
-  PetscCall(EqmMapMeasure(r->map, r->a.mesh, r->image));
-  if (r->kind == EQM_IMAGE_SPACE) r->figures.folds_phi = r->map->distortion.folds; /* in space triangles have no sign */
-  PetscCall(EqmMapCreate(r->a.soup, r->dim, &measured));
+  PetscCall(EqmMapMeasure(r->found, r->a.mesh, r->image));
+  if (r->kind == EQM_IMAGE_SPACE)
+    r->figures.folds_phi = r->found->distortion.folds; /* in space triangles have no sign */
+  PetscCall(EqmMapCreate(r->a.intake.mapped, r->dim, &measured));
   PetscCall(EqmMapMeasure(measured, r->a.mesh, r->a.x));
   r->figures.energy = measured->distortion.energy;
   r->figures.folds_a = measured->distortion.folds;
   PetscCall(EqmMapDestroy(&measured));
   if (!r->bare) {
-    PetscCall(EqmMapCreate(r->b.soup, r->dim, &measured));
+    PetscCall(EqmMapCreate(r->b.intake.mapped, r->dim, &measured));
     PetscCall(EqmMapMeasure(measured, r->b.mesh, r->b.x));
     r->figures.folds_b = measured->distortion.folds;
     r->figures.energy_b = measured->distortion.energy;

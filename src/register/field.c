@@ -2,8 +2,8 @@
 #include "register/field.h"
 #include "register/table.h"
 #include "store/h5.h"
+#include "base/rows.h"
 #include "store/store.h"
-#include <petscsf.h>
 #include <string.h>
 
 /* Letters and digits of the source's name, underscores for the rest; of a file its name alone. */
@@ -76,13 +76,9 @@ static PetscErrorCode ReadDataset(EqmSoup soup, const char *path, EqmCarriedFiel
 /* Rank 0 has the rows and deals them. */
 static PetscErrorCode ReadCsv(EqmSoup soup, const char *file, EqmCarriedField *field)
 {
-  PetscInt start, count;
-  PetscLayout layout;
-  PetscInt *rows;
+  PetscInt start, count, *rows;
   EqmTable table;
   PetscMPIInt rank;
-  PetscSF sf;
-  MPI_Datatype row;
 
   PetscFunctionBegin;
   PetscCall(EqmTableRead(soup->comm, file, 1, EQM_MOST_COLUMNS, "numbers are wanted, as many in every row", &table));
@@ -91,19 +87,11 @@ static PetscErrorCode ReadCsv(EqmSoup soup, const char *file, EqmCarriedField *f
   SlabOf(soup, field, &start, &count);
   PetscCall(PetscMalloc1(field->width * count + 1, &field->slab));
   PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
-  PetscCall(PetscLayoutCreateFromSizes(soup->comm, rank == 0 ? table.rows : 0, table.rows, 1, &layout));
   PetscCall(PetscMalloc1(count, &rows));
   for (PetscInt k = 0; k < count; k++) rows[k] = start + k;
-  PetscCall(PetscSFCreate(soup->comm, &sf));
-  PetscCall(PetscSFSetGraphLayout(sf, layout, count, NULL, PETSC_COPY_VALUES, rows));
+  PetscCall(EqmFetchRows(soup->comm, rank == 0 ? table.rows : 0, count, rows, MPIU_REAL, field->width, table.values,
+                         field->slab));
   PetscCall(PetscFree(rows));
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)field->width, MPIU_REAL, &row));
-  PetscCallMPI(MPI_Type_commit(&row));
-  PetscCall(PetscSFBcastBegin(sf, row, table.values, field->slab, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, row, table.values, field->slab, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&row));
-  PetscCall(PetscSFDestroy(&sf));
-  PetscCall(PetscLayoutDestroy(&layout));
   PetscCall(PetscFree(table.values));
   PetscFunctionReturn(0);
 }

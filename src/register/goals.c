@@ -18,16 +18,10 @@ static PetscBool LieInTarget(const EqmRegistration r)
 }
 
 /* Points of the target are taken to it exactly: onto the sphere, into the disk. */
-static PetscErrorCode TakeTargetPoints(EqmRegistration r)
+static void TakeTargetPoints(EqmRegistration r)
 {
   const EqmLandmarkList *const list = &r->landmarks;
 
-  PetscFunctionBegin;
-  if (!LieInTarget(r))
-    EqmFail(r->comm, EQM_ERR_USAGE,
-            "the landmarks' points do not lie %s: %" PetscInt_FMT
-            " coordinates each, within 1 %%, are wanted; with -landmark_points surface they are points of B",
-            r->kind == EQM_IMAGE_SPHERE ? "on the unit sphere" : "in the unit disk", r->dim);
   for (PetscInt i = 0; i < list->num; i++) {
     PetscReal squared = 0., length;
     for (PetscInt k = 0; k < r->dim; k++) squared += PetscSqr(list->other[r->dim * i + k]);
@@ -36,7 +30,6 @@ static PetscErrorCode TakeTargetPoints(EqmRegistration r)
       r->goal[r->dim * i + k] =
           list->other[r->dim * i + k] / (r->kind == EQM_IMAGE_SPHERE || length > 1. ? length : 1.);
   }
-  PetscFunctionReturn(0);
 }
 
 /* Points in space go to the closest point of B, and with it to its place in the target. Rank 0 asks. */
@@ -47,11 +40,6 @@ static PetscErrorCode TakeSurfacePoints(EqmRegistration r)
   EqmLocator locator;
 
   PetscFunctionBegin;
-  if (list->width != 3)
-    EqmFail(r->comm, EQM_ERR_USAGE, "points of B have three coordinates; the landmarks have %" PetscInt_FMT,
-            list->width);
-  if (r->set.by == EQM_BY_MIDPOINTS)
-    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too and wants vertices of B for landmarks");
   PetscCall(EqmLocatorCreate(r->b.mesh, EQM_IMAGE_SPACE, r->b.mesh->position, &locator));
   PetscCall(EqmLocatorFind(locator, num, list->other, &r->on_b));
   PetscCall(EqmLocatorDestroy(&locator));
@@ -69,30 +57,61 @@ static PetscErrorCode VerticesOfB(EqmRegistration r, PetscInt **vertices)
   PetscFunctionReturn(0);
 }
 
+/* Are the landmarks' points, if they are no vertices, points of the target? */
+static PetscBool AreOfTarget(EqmRegistration r)
+{
+  return (PetscBool)(r->set.points == EQM_POINTS_TARGET ||
+                     (r->set.points == EQM_POINTS_AUTO && (r->bare || LieInTarget(r))));
+}
+
+PetscErrorCode EqmCheckLandmarks(EqmRegistration r)
+{
+  const EqmLandmarkList *const list = &r->landmarks;
+  PetscInt *vertices;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSideCheckVertices(&r->a, list->num, list->vertex));
+  if (list->width == 1) {
+    if (r->bare) EqmFail(r->comm, EQM_ERR_USAGE, "the target has no vertices: give landmarks as points of it");
+    PetscCall(VerticesOfB(r, &vertices));
+    PetscCall(EqmSideCheckVertices(&r->b, list->num, vertices));
+    PetscCall(PetscFree(vertices));
+    PetscFunctionReturn(0);
+  }
+  if (r->set.by == EQM_BY_MIDPOINTS)
+    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too and wants vertices of B for landmarks");
+  if (AreOfTarget(r)) {
+    if (!LieInTarget(r))
+      EqmFail(r->comm, EQM_ERR_USAGE,
+              "the landmarks' points do not lie %s: %" PetscInt_FMT
+              " coordinates each, within 1 %%, are wanted; with -landmark_points surface they are points of B",
+              r->kind == EQM_IMAGE_SPHERE ? "on the unit sphere" : "in the unit disk", r->dim);
+  } else if (list->width != 3) {
+    EqmFail(r->comm, EQM_ERR_USAGE, "points of B have three coordinates; the landmarks have %" PetscInt_FMT,
+            list->width);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Fill r->goal. Collective. */
 PetscErrorCode EqmFindGoals(EqmRegistration r)
 {
   const EqmLandmarkList *const list = &r->landmarks;
-  const PetscBool in_target = (PetscBool)(r->set.points == EQM_POINTS_TARGET ||
-                                          (r->set.points == EQM_POINTS_AUTO && (r->bare || LieInTarget(r))));
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(r->dim * list->num, &r->goal));
   if (list->width == 1) {
     PetscInt *vertices;
-    if (r->bare) EqmFail(r->comm, EQM_ERR_USAGE, "the target has no vertices: give landmarks as points of it");
     PetscCall(VerticesOfB(r, &vertices));
     PetscCall(EqmSideGather(&r->b, list->num, vertices, r->dim, r->b.x, r->goal));
     PetscCall(PetscFree(vertices));
-  } else if (in_target) {
+  } else if (AreOfTarget(r)) {
     if (!r->set.quiet && !r->bare)
       PetscCall(PetscPrintf(r->comm, "landmarks: their points are points of the unit %s\n", r->target));
-    PetscCall(TakeTargetPoints(r));
+    TakeTargetPoints(r);
   } else {
     PetscCall(TakeSurfacePoints(r));
   }
-  if (r->set.by == EQM_BY_MIDPOINTS && list->width != 1)
-    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too and wants vertices of B for landmarks");
   PetscFunctionReturn(0);
 }
 

@@ -13,7 +13,7 @@ static PetscErrorCode AddReals(EqmRegistration r, const EqmSide *side, const cha
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(width * count, &slab));
   for (PetscInt k = 0; k < width * count; k++) slab[k] = fallback;
-  PetscCall(EqmMeshVerticesToInput(side->mesh, soup, width, owned, slab));
+  PetscCall(EqmVerticesToOrigin(side->origin, width, owned, slab));
   PetscCall(EqmMapAddReals(r->map, path, soup->num_vertices, soup->vertex_start, count, width == 1 ? 0 : width, slab));
   PetscFunctionReturn(0);
 }
@@ -31,7 +31,7 @@ static PetscErrorCode AddCells(EqmRegistration r, const EqmSide *side, const cha
   PetscCall(PetscMalloc1(count, &cells));
   for (PetscInt v = 0; v < side->mesh->num_owned; v++) numbers[v] = owned[v];
   for (PetscInt k = 0; k < count; k++) slab[k] = -1.;
-  PetscCall(EqmMeshVerticesToInput(side->mesh, soup, 1, numbers, slab));
+  PetscCall(EqmVerticesToOrigin(side->origin, 1, numbers, slab));
   for (PetscInt k = 0; k < count; k++) cells[k] = (PetscInt64)slab[k];
   PetscCall(PetscFree2(numbers, slab));
   PetscCall(EqmMapAddIntegers(r->map, path, soup->num_vertices, soup->vertex_start, count, 0, cells));
@@ -39,17 +39,23 @@ static PetscErrorCode AddCells(EqmRegistration r, const EqmSide *side, const cha
 }
 
 /* Cell, barycentric coordinates and distance of every vertex's point on the other mesh, under /GROUP. */
-static PetscErrorCode AddLocation(EqmRegistration r, const EqmSide *side, const char *group, EqmLocation location)
+static PetscErrorCode AddLocation(EqmRegistration r, const EqmSide *side, const EqmSide *other, const char *group,
+                                  EqmLocation location)
 {
+  PetscInt *cell;
+  PetscReal *barycentric;
   char path[64];
 
   PetscFunctionBegin;
+  PetscCall(PetscMalloc2(location->num, &cell, location->cell_size * location->num, &barycentric));
+  PetscCall(EqmLocationInOrigin(other->origin, location, cell, barycentric));
   PetscCall(PetscSNPrintf(path, sizeof(path), "/%s/cell", group));
-  PetscCall(AddCells(r, side, path, location->cell));
+  PetscCall(AddCells(r, side, path, cell));
   PetscCall(PetscSNPrintf(path, sizeof(path), "/%s/barycentric", group));
-  PetscCall(AddReals(r, side, path, location->cell_size, 0., location->barycentric));
+  PetscCall(AddReals(r, side, path, location->cell_size, 0., barycentric));
   PetscCall(PetscSNPrintf(path, sizeof(path), "/%s/distance", group));
   PetscCall(AddReals(r, side, path, 1, 0., location->distance));
+  PetscCall(PetscFree2(cell, barycentric));
   PetscFunctionReturn(0);
 }
 
@@ -109,9 +115,9 @@ PetscErrorCode EqmAddToResult(EqmRegistration r)
   PetscCall(AddReals(r, &r->a, "/register/target", r->dim, 0., r->a.x));
   if (r->bare) PetscFunctionReturn(0);
   PetscCall(AddFiguresOfB(r));
-  PetscCall(AddLocation(r, &r->a, "register", r->forward));
+  PetscCall(AddLocation(r, &r->a, &r->b, "register", r->forward));
   PetscCall(AddReals(r, &r->b, "/inverse/coordinates", 3, 0., r->inverse_image));
   PetscCall(AddReals(r, &r->b, "/inverse/target", r->dim, 0., r->b.x));
-  PetscCall(AddLocation(r, &r->b, "inverse", r->inverse));
+  PetscCall(AddLocation(r, &r->b, &r->a, "inverse", r->inverse));
   PetscFunctionReturn(0);
 }

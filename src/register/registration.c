@@ -1,11 +1,7 @@
-/* The registration as an object: options, the way from two files to a correspondence, the figures for people. */
+/* The registration as an object: the way from two files to a correspondence, the figures for people. */
 #include "register/registration.h"
+#include "store/keptmesh.h"
 #include <string.h>
-
-static const char *const ways[] = {"direct", "midpoints", "EqmRegisterBy", "", NULL};
-static const char *const alignments[] = {"auto", "shape", "pose", "none", "EqmAlignment", "", NULL};
-static const char *const landmark_starts[] = {"flow", "rotation", "EqmLandmarkStart", "", NULL};
-static const char *const landmark_points[] = {"auto", "surface", "target", "EqmLandmarkPoints", "", NULL};
 
 PetscErrorCode EqmRegistrationCreate(MPI_Comm comm, EqmLedger ledger, EqmRegistration *out)
 {
@@ -39,6 +35,7 @@ PetscErrorCode EqmRegistrationDestroy(EqmRegistration *registration)
   PetscCall(EqmLocationDestroy(&r->on_b));
   PetscCall(EqmLocationDestroy(&r->forward));
   PetscCall(EqmLocationDestroy(&r->inverse));
+  if (r->found != r->map) PetscCall(EqmMapDestroy(&r->found));
   PetscCall(EqmMapDestroy(&r->map));
   PetscCall(EqmSideReset(&r->a));
   PetscCall(EqmSideReset(&r->b));
@@ -46,114 +43,47 @@ PetscErrorCode EqmRegistrationDestroy(EqmRegistration *registration)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AskLandmarks(EqmRegisterSettings *set, PetscOptionItems *PetscOptionsObject)
+/* Is B the target itself? Where it is not named, the checkpoint says so. */
+static PetscErrorCode AskForTarget(EqmRegistration r, const char *file_b)
 {
+  char name[PETSC_MAX_PATH_LEN], entry[PETSC_MAX_PATH_LEN] = "";
+  const char *restart;
+
   PetscFunctionBegin;
-  PetscCall(
-      PetscOptionsString("-landmarks",
-                         "corresponding points, CSV with a header: per line a vertex of A and a vertex of B, or a "
-                         "vertex of A and the coordinates of a point (vertices count from 0)",
-                         NULL, "", set->landmarks, sizeof(set->landmarks), &set->has_landmarks));
-  PetscCall(PetscOptionsEnum("-landmark_points",
-                             "what points are: of B's surface (the closest point is taken) or of the unit disk or "
-                             "sphere; auto: of the target where they all lie in it",
-                             NULL, landmark_points, (PetscEnum)set->points, (PetscEnum *)&set->points, NULL));
-  PetscCall(PetscOptionsEnum("-landmark_start",
-                             "what goes before the minimisation: flow, a smooth area-preserving flow that brings the "
-                             "landmarks to their places, or only the best rotation, as the papers have it",
-                             NULL, landmark_starts, (PetscEnum)set->start, (PetscEnum *)&set->start, NULL));
-  PetscCall(PetscOptionsReal("-landmark_reach", "how far a landmark's pull reaches in the flow, in radii", NULL,
-                             set->reach, &set->reach, NULL));
-  PetscCall(PetscOptionsReal("-landmark_weight",
-                             "lambda, the weight of the squared distances beside the energy, at first", NULL,
-                             set->weight, &set->weight, NULL));
-  PetscCall(PetscOptionsInt("-landmark_stages",
-                            "while the landmarks are not close enough, minimise anew with ten times the weight, up to "
-                            "so many times in all",
-                            NULL, set->stages, &set->stages, NULL));
-  PetscCall(PetscOptionsReal("-landmark_tol", "how close the landmarks must come, in radii", NULL, set->tolerance,
-                             &set->tolerance, NULL));
+  PetscCall(EqmFirstRestart(r, name, &restart));
+  if (!file_b && restart) PetscCall(EqmKeptMeshAsk(r->comm, restart, 1, entry, sizeof(entry)));
+  PetscCall(PetscStrcmp(file_b ? file_b : entry, "target", &r->bare));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Ask(EqmRegisterSettings *set, PetscOptionItems *PetscOptionsObject)
+/* What does not fit together is said before the long run, not after it. */
+static PetscErrorCode CheckTogether(EqmRegistration r)
 {
   PetscFunctionBegin;
-  PetscCall(PetscOptionsString("-map_a", "the map of A, made before, where A itself holds none", NULL, "", set->map_a,
-                               sizeof(set->map_a), NULL));
-  PetscCall(PetscOptionsString("-map_b", "the map of B", NULL, "", set->map_b, sizeof(set->map_b), NULL));
-  PetscCall(PetscOptionsString("-density_a",
-                               "a positive weight per cell of A (CSV with a header, or /cell/density of an HDF5 file): "
-                               "keep mass instead of area or volume",
-                               NULL, "", set->density_a, sizeof(set->density_a), NULL));
-  PetscCall(PetscOptionsString("-density_b", "the same of B", NULL, "", set->density_b, sizeof(set->density_b), NULL));
-  PetscCall(
-      PetscOptionsEnum("-align",
-                       "without landmarks, the rotation between the maps: pose, such that A and B correspond as "
-                       "they stand in space (003 section 7; not for disks); shape, such that A comes closest to B "
-                       "after a rigid motion; auto, the pose unless the shape is far better; none, as they are",
-                       NULL, alignments, (PetscEnum)set->align, (PetscEnum *)&set->align, NULL));
-  PetscCall(AskLandmarks(set, PetscOptionsObject));
-  PetscCall(PetscOptionsString("-transfer",
-                               "fields to carry along, separated by commas: coordinates, a dataset of A's .h5 file "
-                               "(/vertex/ratio), a .csv file with a header and a row per vertex or cell; with b: in "
-                               "front, from B to A",
-                               NULL, "", set->transfer, sizeof(set->transfer), NULL));
-  PetscCall(PetscOptionsInt("-frames",
-                            "write so many frames of the straight way from A to its points on B: a time series "
-                            "OUT.morph.xmf for ParaView beside OUT.h5, and meshes OUT.frame000.obj, ...",
-                            NULL, set->frames, &set->frames, NULL));
-  PetscCall(PetscOptionsEnum("-register_by",
-                             "direct: A's map goes to the landmarks of B; midpoints: both maps go half the way (001 "
-                             "section 6.6)",
-                             NULL, ways, (PetscEnum)set->by, (PetscEnum *)&set->by, NULL));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmRegistrationSetFromOptions(EqmRegistration r)
-{
-  EqmRegisterSettings *const set = &r->set;
-
-  PetscFunctionBegin;
-  PetscOptionsBegin(r->comm, NULL, "Registration", NULL);
-  PetscCall(Ask(set, PetscOptionsObject));
-  PetscOptionsEnd();
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &set->quiet, NULL)); /* the solver lists it */
-  if (!(set->weight > 0.) || !(set->tolerance > 0.) || !(set->reach > 0.))
-    EqmFail(r->comm, EQM_ERR_USAGE, "-landmark_weight, -landmark_tol and -landmark_reach want numbers above 0");
-  if (set->stages < 1)
-    EqmFail(r->comm, EQM_ERR_USAGE, "-landmark_stages %" PetscInt_FMT ": give 1 or more", set->stages);
-  if (set->frames < 0 || set->frames == 1 || set->frames > 1000)
-    EqmFail(r->comm, EQM_ERR_USAGE, "-frames %" PetscInt_FMT ": give a number from 2 to 1000", set->frames);
-  if (set->by == EQM_BY_MIDPOINTS && !set->has_landmarks)
-    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints wants -landmarks FILE");
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmRegistrationHelp(MPI_Comm comm)
-{
-  EqmRegistration r;
-
-  PetscFunctionBegin;
-  PetscCall(EqmRegistrationCreate(comm, NULL, &r));
-  PetscCall(EqmRegistrationSetFromOptions(r));
-  PetscCall(EqmRegistrationDestroy(&r));
-  PetscCall(EqmSolverHelp(comm, "disk"));
+  if (r->bare && r->set.by == EQM_BY_MIDPOINTS)
+    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too, and the target does not move");
+  if (r->set.align == EQM_ALIGN_POSE && r->dim == 2)
+    EqmFail(r->comm, EQM_ERR_USAGE, "-align pose is for the sphere and the ball: a disk has no pose in space");
+  if (r->landmarks.num) PetscCall(EqmCheckLandmarks(r));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmRegistrationRead(EqmRegistration r, const char *file_a, const char *file_b)
 {
+  char usage[2 * PETSC_MAX_PATH_LEN];
+
   PetscFunctionBegin;
-  r->bare = (PetscBool)!strcmp(file_b, "target");
-  PetscCall(EqmSideRead(r, &r->a, file_a, r->set.density_a, r->set.map_a));
-  if (!r->bare) PetscCall(EqmSideRead(r, &r->b, file_b, r->set.density_b, r->set.map_b));
+  PetscCall(PetscSNPrintf(usage, sizeof(usage), "equimap register %s %s", file_a ? file_a : "", file_b ? file_b : ""));
+  PetscCall(AskForTarget(r, file_b));
+  PetscCall(EqmSideRead(r, &r->a, file_a, r->set.density_a, r->set.map_a, usage));
+  PetscCall(EqmPause(r, PETSC_FALSE));
+  if (r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
+  if (!r->bare) PetscCall(EqmSideRead(r, &r->b, file_b, r->set.density_b, r->set.map_b, usage));
   if (r->set.has_landmarks)
     PetscCall(EqmLandmarkListRead(r->comm, r->set.landmarks, r->a.soup->num_vertices,
                                   r->bare ? -1 : r->b.soup->num_vertices, &r->landmarks));
   PetscCall(EqmReadFields(r));
-  if (r->bare && r->set.by == EQM_BY_MIDPOINTS)
-    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too, and the target does not move");
+  PetscCall(CheckTogether(r));
   PetscFunctionReturn(0);
 }
 
@@ -198,9 +128,9 @@ static PetscErrorCode Judge(EqmRegistration r)
 }
 
 /* What the result says of the run: history and work of the last minimisation for A. */
-static PetscErrorCode TakeRun(EqmRegistration r)
+static PetscErrorCode TakeRun(EqmRegistration r, EqmMap to)
 {
-  const EqmMap from = r->a.map, to = r->map;
+  const EqmMap from = r->a.map;
   EqmWork *work;
 
   PetscFunctionBegin;
@@ -219,21 +149,74 @@ static PetscErrorCode TakeRun(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmRegistrationSolve(EqmRegistration r)
+/* f and g. */
+static PetscErrorCode MapBoth(EqmRegistration r)
 {
   PetscFunctionBegin;
   PetscCall(EqmSideSolve(r, &r->a));
-  if (!r->bare && r->status != EQM_STATUS_STOPPED) PetscCall(EqmSideSolve(r, &r->b));
-  if (r->landmarks.num && r->status != EQM_STATUS_STOPPED) {
+  PetscCall(EqmPause(r, PETSC_FALSE)); /* the next minimisation looks at the clock itself */
+  if (!r->bare) PetscCall(EqmSideSolve(r, &r->b));
+  PetscFunctionReturn(0);
+}
+
+/* h: by landmarks, or a rotation. */
+static PetscErrorCode MoveOntoEachOther(EqmRegistration r)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmPause(r, PETSC_FALSE));
+  if (r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
+  if (r->landmarks.num) {
     PetscCall(EqmFindGoals(r));
     PetscCall(EqmRotateOntoLandmarks(r));
     PetscCall(EqmAdapt(r));
+  } else if (!r->bare) {
+    PetscCall(EqmAlign(r));
   }
+  PetscFunctionReturn(0);
+}
+
+/* phi, and what it is worth. */
+static PetscErrorCode ComposeAndMeasure(EqmRegistration r)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmPause(r, PETSC_TRUE));
+  if (r->status != EQM_STATUS_STOPPED) PetscCall(EqmCompose(r));
+  PetscCall(EqmPause(r, PETSC_TRUE));
   if (r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
-  if (!r->landmarks.num && !r->bare) PetscCall(EqmAlign(r));
-  PetscCall(EqmCompose(r));
   PetscCall(EqmMeasureCorrespondence(r));
-  PetscCall(TakeRun(r));
+  PetscCall(TakeRun(r, r->found));
+  PetscCall(EqmIntakeTakeMap(&r->a.intake, r->a.mesh, r->found, &r->map));
+  PetscCall(EqmPause(r, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+/* What a run that is to go on later tells of itself: the last minimisation for A. */
+static PetscErrorCode TakeStopped(EqmRegistration r)
+{
+  PetscFunctionBegin;
+  if (!r->map) {
+    PetscCall(EqmMapCreate(r->a.soup, r->dim, &r->map));
+    if (r->a.map) r->figures.energy = r->a.map->distortion.energy;
+    if (r->a.map) PetscCall(TakeRun(r, r->map));
+    PetscCall(PetscStrncpy(r->map->command, "register", sizeof(r->map->command)));
+  }
+  r->map->status = r->status;
+  PetscCall(PetscStrncpy(r->map->message, r->message, sizeof(r->map->message)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmRegistrationSolve(EqmRegistration r)
+{
+  PetscFunctionBegin;
+  if (r->status != EQM_STATUS_STOPPED) PetscCall(EqmKeepMeshes(r));
+  PetscCall(EqmPause(r, PETSC_FALSE));
+  if (r->status != EQM_STATUS_STOPPED) PetscCall(MapBoth(r));
+  if (r->status != EQM_STATUS_STOPPED) PetscCall(MoveOntoEachOther(r));
+  if (r->status != EQM_STATUS_STOPPED) PetscCall(ComposeAndMeasure(r));
+  if (r->status == EQM_STATUS_STOPPED) {
+    PetscCall(TakeStopped(r));
+    PetscFunctionReturn(0);
+  }
   PetscCall(Judge(r));
   PetscCall(EqmAddToResult(r));
   PetscCall(EqmTransferFields(r));

@@ -5,6 +5,8 @@
 #include <equimap/register.h>
 #include "register/field.h"
 #include "register/landmark_list.h"
+#include "register/origin.h"
+#include "base/stop.h"
 
 typedef enum { EQM_BY_DIRECT, EQM_BY_MIDPOINTS } EqmRegisterBy;
 typedef enum { EQM_LANDMARKS_FLOW, EQM_LANDMARKS_ROTATION } EqmLandmarkStart;
@@ -13,13 +15,14 @@ typedef enum { EQM_POINTS_AUTO, EQM_POINTS_SURFACE, EQM_POINTS_TARGET } EqmLandm
 
 typedef struct {
   char landmarks[PETSC_MAX_PATH_LEN], map_a[PETSC_MAX_PATH_LEN], map_b[PETSC_MAX_PATH_LEN],
-      density_a[PETSC_MAX_PATH_LEN], density_b[PETSC_MAX_PATH_LEN], transfer[PETSC_MAX_PATH_LEN];
-  PetscBool has_landmarks, quiet;
+      density_a[PETSC_MAX_PATH_LEN], density_b[PETSC_MAX_PATH_LEN], transfer[PETSC_MAX_PATH_LEN],
+      checkpoint[PETSC_MAX_PATH_LEN], restart[PETSC_MAX_PATH_LEN];
+  PetscBool has_landmarks, repair, quiet;
   EqmRegisterBy by;
   EqmLandmarkStart start;
   EqmLandmarkPoints points;
   EqmAlignment align;
-  PetscReal weight, tolerance, reach;
+  PetscReal weight, tolerance, reach, wall_time;
   PetscInt stages, frames;
 } EqmRegisterSettings;
 
@@ -33,9 +36,12 @@ typedef struct {
 /* One of the two meshes with its map to the target. */
 typedef struct {
   const char *name; /* "A" or "B" */
-  EqmSoup soup;
-  EqmMesh mesh;
-  EqmMap map;        /* f or g as computed or read */
+  EqmIntake intake;
+  EqmSoup soup; /* as the file has it: intake.given */
+  EqmMesh mesh; /* of intake.mapped, which is another where something was mended */
+  EqmOrigin origin;
+  EqmMap map;        /* f or g as computed or read, of intake.mapped */
+  EqmMap read;       /* as read, of the file's mesh: `map` itself where nothing was mended; NULL: none was */
   PetscReal *x;      /* places in the target per local vertex, moved by rotations and h */
   PetscReal *weight; /* per owned vertex: its share of the measure, sum one */
 } EqmSide;
@@ -72,28 +78,47 @@ struct _p_EqmRegistration {
   EqmLocation forward, inverse;
   PetscReal *image, *inverse_image; /* phi per owned vertex of A, phi^-1 per owned vertex of B: three coordinates */
   EqmMap map;
-  PetscInt stage;   /* minimisations so far: each has a checkpoint of its own */
-  EqmStatus status; /* EQM_STATUS_STOPPED: to be continued, and nothing further is done */
+  EqmMap found;      /* the same of A's mended mesh; NULL where nothing was mended */
+  PetscInt stage;    /* minimisations so far: each has a checkpoint of its own */
+  PetscBool unsaved; /* the last of them could not be written */
+  EqmStopFile stop_file;
+  char kept[PETSC_MAX_PATH_LEN]; /* what checkpoints say of the run's copies of its meshes */
+  EqmStatus status;              /* EQM_STATUS_STOPPED: to be continued, and nothing further is done */
   char message[EQM_MESSAGE_MAX];
   EqmRegisterFigures figures;
 };
 
 /* ---- side.c */
-/* Read a mesh, with its density if `density_file` is not empty, and its map if the file holds one or `map_file` names
-   one. Collective. */
+/* Read a mesh, or the copy of it where the run goes on and the file is gone or not named (NULL), with its density if
+   `density_file` is not empty, and its map if the file holds one or `map_file` names one. `usage`: how the run was
+   called. Collective. */
 PETSC_INTERN PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *density_file,
-                                        const char *map_file);
+                                        const char *map_file, const char *usage);
 PETSC_INTERN PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side);
-/* Run a solver that is ready, as the next stage; takes note if it was stopped to be continued. Collective. */
-PETSC_INTERN PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSideReset(EqmSide *side);
+/* Landmarks must be vertices of some cell. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmSideCheckVertices(const EqmSide *side, PetscInt num, const PetscInt *vertices);
 /* `width` values of each of `num` vertices (input numbers), from values per owned vertex; the same on every rank.
-   Errors: EQM_ERR_USAGE (a vertex of no cell). Collective. */
+   Collective. */
 PETSC_INTERN PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *vertices, PetscInt width,
                                           const PetscReal *values, PetscReal *gathered);
 /* Radius of the disk, sphere or ball that has the side's measure. Not collective. */
 PETSC_INTERN PetscReal EqmSideRadius(const EqmRegistration r, const EqmSide *side);
+/* ---- stages.c */
+/* From here on requests to stop are noted, and -checkpoint and -restart are known. Collective. */
+PETSC_INTERN PetscErrorCode EqmStagesBegin(EqmRegistration r);
+/* The first checkpoint of the run that goes on; NULL: it begins. */
+PETSC_INTERN PetscErrorCode EqmFirstRestart(EqmRegistration r, char name[PETSC_MAX_PATH_LEN], const char **restart);
+/* Copies of the meshes, with maps that were read, beside the checkpoints. Collective. */
+PETSC_INTERN PetscErrorCode EqmKeepMeshes(EqmRegistration r);
+/* Run a solver that is ready, as the next stage; takes note if it was stopped to be continued. Collective. */
+PETSC_INTERN PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver);
+/* Between two steps of the way: has somebody asked to stop, or, with `clock`, is -wall_time over? Then r->status is
+   EQM_STATUS_STOPPED and nothing further is to be done. Only with -checkpoint. Collective. */
+PETSC_INTERN PetscErrorCode EqmPause(EqmRegistration r, PetscBool clock);
 /* ---- goals.c */
+/* What can be said of landmarks before there are maps. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmCheckLandmarks(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmFindGoals(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmLandmarkErrors(EqmRegistration r);
 /* ---- adapt.c */

@@ -1,8 +1,10 @@
 /* One side of a registration: a mesh with its map to the target, computed or read. */
 #include "register/registration.h"
 #include "register/closest.h"
+#include "base/lookup.h"
 #include "method/method.h"
 #include "store/h5.h"
+#include "store/keptmesh.h"
 #include "store/store.h"
 #include <math.h>
 #include <string.h>
@@ -21,32 +23,21 @@ static PetscErrorCode HoldsMap(MPI_Comm comm, const char *file, PetscBool *holds
   PetscFunctionReturn(0);
 }
 
-/* The target that the mesh's topology asks for; B must have A's. */
-static PetscErrorCode ChooseTarget(EqmRegistration r, const EqmSide *side)
+/* Both must be of one kind. */
+static PetscErrorCode TakeTarget(EqmRegistration r, const EqmSide *side)
 {
-  static const char *const targets[] = {
-      [EQM_SHAPE_DISK] = "disk", [EQM_SHAPE_SPHERE] = "sphere", [EQM_SHAPE_BALL] = "ball", [EQM_SHAPE_OTHER] = NULL};
-  char text[4 * EQM_MESSAGE_MAX];
-  EqmDiagnosis diagnosis;
-  PetscBool fatal = PETSC_TRUE;
+  const EqmIntake *const intake = &side->intake;
 
   PetscFunctionBegin;
-  PetscCall(EqmPhaseBegin(r->ledger, EQM_PHASE_DIAGNOSE));
-  PetscCall(EqmSoupDiagnose(side->soup, &diagnosis));
-  PetscCall(EqmDiagnosisDescribe(&diagnosis, targets[diagnosis.topology], &fatal, text, sizeof(text)));
-  if (!targets[diagnosis.topology] || fatal)
-    EqmFail(r->comm, EQM_ERR_MESH, "%s is neither disk, sphere nor ball, or cannot be mapped to it:\n%s",
-            side->soup->file, text);
-  PetscCall(EqmPhaseEnd(r->ledger, EQM_PHASE_DIAGNOSE));
-  if (r->target[0] && strcmp(r->target, targets[diagnosis.topology]))
+  if (r->target[0] && strcmp(r->target, intake->target))
     EqmFail(r->comm, EQM_ERR_MESH,
             "A is of the kind that maps to the %s, but %s maps to the %s: they do not correspond", r->target,
-            side->soup->file, targets[diagnosis.topology]);
-  PetscCall(PetscStrncpy(r->target, targets[diagnosis.topology], sizeof(r->target)));
-  r->dim = diagnosis.topology == EQM_SHAPE_DISK ? 2 : 3;
-  r->kind = diagnosis.topology == EQM_SHAPE_DISK     ? EQM_IMAGE_PLANE
-            : diagnosis.topology == EQM_SHAPE_SPHERE ? EQM_IMAGE_SPHERE
-                                                     : EQM_IMAGE_SPACE;
+            side->soup->file, intake->target);
+  PetscCall(PetscStrncpy(r->target, intake->target, sizeof(r->target)));
+  r->dim = intake->topology == EQM_SHAPE_DISK ? 2 : 3;
+  r->kind = intake->topology == EQM_SHAPE_DISK     ? EQM_IMAGE_PLANE
+            : intake->topology == EQM_SHAPE_SPHERE ? EQM_IMAGE_SPHERE
+                                                   : EQM_IMAGE_SPACE;
   PetscFunctionReturn(0);
 }
 
@@ -58,10 +49,6 @@ static PetscErrorCode CheckMap(EqmRegistration r, EqmSide *side, const char *fil
   PetscReal worst = 0.;
 
   PetscFunctionBegin;
-  if (side->map->dim != r->dim)
-    EqmFail(r->comm, EQM_ERR_USAGE,
-            "the map in %s has %" PetscInt_FMT " coordinates; a map to the %s has %" PetscInt_FMT, file, side->map->dim,
-            r->target, r->dim);
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
     PetscReal squared = 0.;
     for (PetscInt k = 0; k < r->dim; k++) squared += PetscSqr(side->x[r->dim * v + k]);
@@ -105,44 +92,121 @@ static PetscErrorCode WeighVertices(EqmSide *side)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *density_file,
-                           const char *map_file)
+/* Places of the mended mesh, where a result of a mended mesh has them. */
+static PetscErrorCode ReadMended(EqmRegistration r, EqmSide *side, const char *file, PetscBool *found)
 {
-  PetscBool holds;
+  const EqmSoup mended = side->intake.mapped;
+  EqmSlab slab = {mended->num_vertices, mended->vertex_start, mended->vertex_end - mended->vertex_start, r->dim};
+  const char *const path = "/repaired/coordinates";
+  PetscInt64 rows = 0, width = 0;
+  PetscReal *places;
+  EqmH5 h5;
 
   PetscFunctionBegin;
+  PetscCall(PetscMalloc1(slab.width * slab.count + 1, &places));
+  PetscCall(EqmH5Open(r->comm, file, &h5));
+  PetscCall(EqmH5HasDataset(h5, path, found));
+  if (*found) PetscCall(EqmH5GetShape(h5, path, &rows, &width));
+  *found = (PetscBool)(rows == slab.total && width == slab.width);
+  if (*found) PetscCall(EqmH5ReadReals(h5, path, slab, places));
+  PetscCall(EqmH5Close(&h5));
+  if (*found) PetscCall(EqmMeshVerticesFromInput(side->mesh, mended, r->dim, places, side->x));
+  PetscCall(PetscFree(places));
+  PetscFunctionReturn(0);
+}
+
+/* The map of the file's mesh as one of the mended mesh: as it was when the same was mended before, else linear in the
+   cells of the file. */
+static PetscErrorCode TakeMended(EqmRegistration r, EqmSide *side, const char *file)
+{
+  const EqmIntake *const intake = &side->intake;
+  PetscBool found = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (EqmHasSuffix(file, ".h5")) PetscCall(ReadMended(r, side, file, &found));
+  if (!found) PetscCall(EqmVerticesFromOrigin(side->origin, r->dim, side->read->coordinates, side->x));
+  PetscCall(EqmMapCreate(intake->mapped, r->dim, &side->map));
+  PetscCall(EqmMeshVerticesToInput(side->mesh, intake->mapped, r->dim, side->x, side->map->coordinates));
+  PetscCall(PetscStrncpy(side->map->method, side->read->method, sizeof(side->map->method)));
+  side->read->mended = side->map;
+  side->read->parent = intake->parent;
+  side->read->repair = intake->repair;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadMap(EqmRegistration r, EqmSide *side, const char *file, PetscBool is_copy)
+{
+  PetscFunctionBegin;
   PetscCall(EqmPhaseBegin(r->ledger, EQM_PHASE_READ));
-  PetscCall(EqmSoupRead(r->comm, file, &side->soup));
-  if (density_file[0]) PetscCall(EqmSoupReadDensity(side->soup, density_file));
-  PetscCall(HoldsMap(r->comm, file, &holds));
-  if (map_file[0])
-    PetscCall(EqmMapRead(side->soup, map_file, &side->map));
-  else if (holds)
-    PetscCall(EqmMapRead(side->soup, file, &side->map));
-  PetscCall(EqmPhaseEnd(r->ledger, EQM_PHASE_READ));
-  PetscCall(ChooseTarget(r, side));
-  PetscCall(EqmPhaseBegin(r->ledger, EQM_PHASE_DISTRIBUTE));
-  PetscCall(EqmMeshCreate(side->soup, r->ledger, &side->mesh));
-  PetscCall(EqmPhaseEnd(r->ledger, EQM_PHASE_DISTRIBUTE));
-  PetscCall(WeighVertices(side));
-  if (!side->map) PetscFunctionReturn(0);
+  PetscCall(EqmMapRead(side->soup, file, &side->read));
+  if (side->read->dim != r->dim)
+    EqmFail(r->comm, EQM_ERR_USAGE,
+            "the map in %s has %" PetscInt_FMT " coordinates; a map to the %s has %" PetscInt_FMT, file,
+            side->read->dim, r->target, r->dim);
   PetscCall(PetscMalloc1(r->dim * side->mesh->num_local, &side->x));
-  if (side->map->dim == r->dim)
-    PetscCall(EqmMeshVerticesFromInput(side->mesh, side->soup, r->dim, side->map->coordinates, side->x));
-  PetscCall(CheckMap(r, side, map_file[0] ? map_file : file));
+  if (side->intake.mapped != side->intake.given) {
+    PetscCall(TakeMended(r, side, file));
+  } else {
+    side->map = side->read;
+    PetscCall(EqmMeshVerticesFromInput(side->mesh, side->soup, r->dim, side->read->coordinates, side->x));
+  }
+  if (is_copy) PetscCall(EqmKeptMeshCheckMap(side->read, file));
+  PetscCall(EqmPhaseEnd(r->ledger, EQM_PHASE_READ));
+  PetscCall(CheckMap(r, side, file));
   PetscCall(TurnMirrored(r, side));
   PetscCall(EqmMapMeasure(side->map, side->mesh, side->x));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver)
+/* Which file has the map: the one that is named, the mesh's own, the run's copy where the named one is gone; NULL:
+   none has. */
+static PetscErrorCode ChooseMap(EqmRegistration r, EqmIntakeOptions *options, const char *restart, const char *map_file,
+                                const char **file, PetscBool *is_copy)
 {
+  PetscBool there, holds, has_density;
+
   PetscFunctionBegin;
-  PetscCall(EqmSolverSetStage(solver, ++r->stage));
-  PetscCall(EqmSolverSolve(solver));
-  if (solver->status != EQM_STATUS_STOPPED) PetscFunctionReturn(0);
-  r->status = solver->status;
-  PetscCall(PetscStrncpy(r->message, solver->message, sizeof(r->message)));
+  PetscCall(EqmFileIsThere(r->comm, map_file, &there));
+  *file = map_file;
+  *is_copy = PETSC_FALSE;
+  if (map_file[0] && (there || !restart)) PetscFunctionReturn(0);
+  if (map_file[0] && !options->copy[0])
+    PetscCall(
+        EqmKeptMeshFind(r->comm, restart, options->part[0] == 'B', options->copy, sizeof(options->copy), &has_density));
+  *is_copy = (PetscBool)(map_file[0] || options->is_copy);
+  *file = *is_copy ? options->copy : options->mesh;
+  PetscCall(HoldsMap(r->comm, *file, &holds));
+  if (!holds) *file = map_file[0] ? map_file : NULL;
+  if (holds && *is_copy && !options->is_copy && !r->set.quiet)
+    PetscCall(PetscPrintf(r->comm, "%s: the map is the run's own copy, '%s'\n", options->part, *file));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, const char *density_file,
+                           const char *map_file, const char *usage)
+{
+  EqmIntakeOptions options = {.part = side->name,
+                              .usage = usage,
+                              .density = density_file[0] ? density_file : NULL,
+                              .repair = r->set.repair,
+                              .quiet = r->set.quiet};
+  char name[PETSC_MAX_PATH_LEN];
+  const char *restart, *with_map;
+  PetscBool is_copy;
+
+  PetscFunctionBegin;
+  PetscCall(EqmFirstRestart(r, name, &restart));
+  PetscCall(EqmIntakeChoose(r->comm, file, restart, &options));
+  PetscCall(EqmIntakeRead(r->comm, &options, r->ledger, &side->intake));
+  side->soup = side->intake.given;
+  PetscCall(TakeTarget(r, side));
+  PetscCall(ChooseMap(r, &options, restart, map_file, &with_map, &is_copy));
+  PetscCall(EqmPhaseBegin(r->ledger, EQM_PHASE_DISTRIBUTE));
+  PetscCall(EqmMeshCreate(side->intake.mapped, r->ledger, &side->mesh));
+  PetscCall(EqmOriginCreate(&side->intake, side->mesh, &side->origin));
+  PetscCall(EqmPhaseEnd(r->ledger, EQM_PHASE_DISTRIBUTE));
+  PetscCall(WeighVertices(side));
+  if (with_map) PetscCall(ReadMap(r, side, with_map, is_copy));
   PetscFunctionReturn(0);
 }
 
@@ -152,7 +216,7 @@ PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side)
   EqmSolver solver;
 
   PetscFunctionBegin;
-  if (side->map) PetscFunctionReturn(0);
+  if (side->map || r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
   if (!r->set.quiet)
     PetscCall(PetscPrintf(r->comm, "map of %s: %s to the %s\n", side->name, side->soup->file, r->target));
   PetscCall(EqmSolverCreate(side->mesh, r->target, &solver));
@@ -162,7 +226,7 @@ PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side)
   }
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmRegistrationMinimise(r, solver));
-  PetscCall(EqmSolverGetMap(solver, side->soup, &side->map));
+  PetscCall(EqmSolverGetMap(solver, side->intake.mapped, &side->map));
   PetscCall(PetscMalloc1(r->dim * side->mesh->num_local, &side->x));
   PetscCall(PetscArraycpy(side->x, solver->place.x, r->dim * side->mesh->num_local));
   PetscCall(EqmSolverDestroy(&solver));
@@ -175,25 +239,22 @@ PetscErrorCode EqmSideReset(EqmSide *side)
   PetscFunctionBegin;
   PetscCall(PetscFree(side->x));
   PetscCall(PetscFree(side->weight));
-  if (side->map) PetscCall(EqmMapDestroy(&side->map));
+  if (side->read != side->map) PetscCall(EqmMapDestroy(&side->read));
+  PetscCall(EqmMapDestroy(&side->map));
+  PetscCall(EqmOriginDestroy(&side->origin));
   if (side->mesh) PetscCall(EqmMeshDestroy(&side->mesh));
-  if (side->soup) PetscCall(EqmSoupDestroy(&side->soup));
+  if (side->intake.given) PetscCall(EqmIntakeDestroy(&side->intake));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *vertices, PetscInt width,
-                             const PetscReal *values, PetscReal *gathered)
+PetscErrorCode EqmSideCheckVertices(const EqmSide *side, PetscInt num, const PetscInt *vertices)
 {
   PetscInt *local, *owners;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(num, &local, num, &owners));
   PetscCall(EqmMeshFindVertices(side->mesh, num, vertices, local));
-  for (PetscInt i = 0; i < num; i++) {
-    owners[i] = local[i] >= 0;
-    for (PetscInt k = 0; k < width; k++) gathered[width * i + k] = local[i] >= 0 ? values[width * local[i] + k] : 0.;
-  }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, gathered, (PetscMPIInt)(width * num), MPIU_REAL, MPIU_SUM, side->mesh->comm));
+  for (PetscInt i = 0; i < num; i++) owners[i] = local[i] >= 0;
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, owners, (PetscMPIInt)num, MPIU_INT, MPI_SUM, side->mesh->comm));
   for (PetscInt i = 0; i < num; i++) {
     if (owners[i] == 1) continue;
@@ -201,5 +262,21 @@ PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *
             i + 1, vertices[i], side->name);
   }
   PetscCall(PetscFree2(local, owners));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *vertices, PetscInt width,
+                             const PetscReal *values, PetscReal *gathered)
+{
+  PetscInt *local;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(num, &local));
+  PetscCall(EqmMeshFindVertices(side->mesh, num, vertices, local));
+  for (PetscInt i = 0; i < num; i++) {
+    for (PetscInt k = 0; k < width; k++) gathered[width * i + k] = local[i] >= 0 ? values[width * local[i] + k] : 0.;
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, gathered, (PetscMPIInt)(width * num), MPIU_REAL, MPIU_SUM, side->mesh->comm));
+  PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }

@@ -2,29 +2,6 @@
 #include "register/registration.h"
 #include <string.h>
 
-/* Values of the slab's cells to the cells that each rank owns. */
-static PetscErrorCode CellsFromInput(const EqmSide *side, PetscInt width, const PetscReal *slab, PetscReal *owned)
-{
-  const EqmSoup soup = side->soup;
-  PetscLayout layout;
-  MPI_Datatype row;
-  PetscSF sf;
-
-  PetscFunctionBegin;
-  PetscCall(PetscLayoutCreateFromSizes(soup->comm, soup->cell_end - soup->cell_start, soup->num_cells, 1, &layout));
-  PetscCall(PetscSFCreate(soup->comm, &sf));
-  PetscCall(
-      PetscSFSetGraphLayout(sf, layout, side->mesh->num_owned_cells, NULL, PETSC_COPY_VALUES, side->mesh->cell_input));
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &row));
-  PetscCallMPI(MPI_Type_commit(&row));
-  PetscCall(PetscSFBcastBegin(sf, row, slab, owned, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, row, slab, owned, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&row));
-  PetscCall(PetscSFDestroy(&sf));
-  PetscCall(PetscLayoutDestroy(&layout));
-  PetscFunctionReturn(0);
-}
-
 /* Where the middles of `to`'s cells lie among `from`'s. */
 static PetscErrorCode LocateMiddles(EqmRegistration r, const EqmSide *from, const EqmSide *to, EqmLocation *location)
 {
@@ -62,11 +39,11 @@ static PetscErrorCode CarryCells(EqmRegistration r, const EqmSide *from, const E
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(width * from->mesh->num_owned_cells, &owned, width * to->mesh->num_owned_cells, &carried));
   PetscCall(PetscCalloc1(width * count, &slab));
-  PetscCall(CellsFromInput(from, width, field->slab, owned));
+  PetscCall(EqmCellsFromOrigin(from->origin, width, field->slab, owned));
   PetscCall(LocateMiddles(r, from, to, &location));
   PetscCall(EqmLocationSample(location, from->mesh, width, owned, carried));
   PetscCall(EqmLocationDestroy(&location));
-  PetscCall(EqmMeshCellsToInput(to->mesh, soup, width, carried, slab));
+  PetscCall(EqmCellsToOrigin(to->origin, width, carried, slab));
   PetscCall(PetscFree2(owned, carried));
   PetscCall(EqmMapAddReals(r->map, path, soup->num_cells, soup->cell_start, count, width == 1 ? 0 : width, slab));
   PetscFunctionReturn(0);
@@ -107,12 +84,12 @@ static PetscErrorCode CarryVertices(EqmRegistration r, const EqmSide *from, cons
   PetscCall(PetscMalloc3(width * from->mesh->num_local, &value, width * to->mesh->num_local, &carried,
                          width * from->mesh->num_owned, &back));
   PetscCall(PetscCalloc1(width * count, &slab));
-  PetscCall(EqmMeshVerticesFromInput(from->mesh, from->soup, width, field->slab, value));
+  PetscCall(EqmVerticesFromOrigin(from->origin, width, field->slab, value));
   PetscCall(EqmLocationInterpolate(there, from->mesh, width, value, carried));
   PetscCall(EqmMeshUpdateGhosts(to->mesh, width, carried));
   PetscCall(EqmLocationInterpolate(again, to->mesh, width, carried, back));
   PetscCall(RoundTrip(r, from, width, value, back, &share));
-  PetscCall(EqmMeshVerticesToInput(to->mesh, soup, width, carried, slab));
+  PetscCall(EqmVerticesToOrigin(to->origin, width, carried, slab));
   PetscCall(PetscFree3(value, carried, back));
   PetscCall(EqmMapAddReals(r->map, path, soup->num_vertices, soup->vertex_start, count, width == 1 ? 0 : width, slab));
   PetscCall(

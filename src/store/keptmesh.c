@@ -1,4 +1,5 @@
 #include "store/keptmesh.h"
+#include "base/checksum.h"
 #include "base/lookup.h"
 #include "base/quiet.h"
 #include "format/format.h"
@@ -7,13 +8,18 @@
 #include "store/state.h"
 #include "store/store.h"
 #include <libgen.h>
+#include <string.h>
 
-static const char density_path[] = "/cell/density";
+static const char density_path[] = "/cell/density", checksum_key[] = "map_checksum";
 
-PetscErrorCode EqmKeptMeshName(const char *checkpoint, char *name, size_t length)
+PetscErrorCode EqmKeptMeshName(const char *checkpoint, const char *part, char *name, size_t length)
 {
+  char suffix[32];
+
   PetscFunctionBegin;
-  PetscCall(EqmNameBeside(checkpoint, ".mesh.h5", name, length));
+  PetscCall(PetscSNPrintf(suffix, sizeof(suffix), "%s%s.mesh.h5", part ? "." : "", part ? part : ""));
+  PetscCall(PetscStrtolower(suffix));
+  PetscCall(EqmNameBeside(checkpoint, suffix, name, length));
   PetscFunctionReturn(0);
 }
 
@@ -29,14 +35,40 @@ static PetscErrorCode HasDensity(MPI_Comm comm, const char *name, PetscBool *has
   PetscFunctionReturn(0);
 }
 
-/* Is a sound copy there, and is it of this mesh with this density? All of it is read. */
-static PetscErrorCode Look(EqmSoup soup, const char *file, PetscBool *sound, PetscBool *same)
+/* Of the map's places, and of those of the mended mesh. */
+static PetscErrorCode ChecksumOfMap(EqmMap map, PetscInt64 *checksum)
+{
+  PetscFunctionBegin;
+  *checksum = 0;
+  for (EqmMap m = map; m; m = m->mended) {
+    const PetscInt64 count = (PetscInt64)m->dim * (m->soup->vertex_end - m->soup->vertex_start);
+    EqmChecksum all;
+    PetscCall(EqmChecksumJoin(m->soup->comm, EqmChecksumReals(count, m->coordinates), &all));
+    *checksum = (*checksum << 31 ^ *checksum >> 31) ^ all.crc;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What a copy says that its map's checksum is; empty: it has none. */
+static PetscErrorCode AskOfMap(MPI_Comm comm, const char *name, char *text, size_t length)
+{
+  EqmH5 h5;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5Open(comm, name, &h5));
+  PetscCall(EqmH5GetText(h5, checksum_key, "", text, length));
+  PetscCall(EqmH5Close(&h5));
+  PetscFunctionReturn(0);
+}
+
+/* Is a sound copy there, and is it of this mesh with this density and map? All of the mesh is read. */
+static PetscErrorCode Look(EqmSoup soup, const char *map_checksum, const char *file, PetscBool *sound, PetscBool *same)
 {
   PetscInt64 wanted, found = 0;
   EqmSoup there = NULL;
-  char message[EQM_MESSAGE_MAX];
+  char message[EQM_MESSAGE_MAX], map_there[32] = "";
   PetscErrorCode error;
-  PetscBool has_density;
+  PetscBool has_density, same_map;
 
   PetscFunctionBegin;
   *same = PETSC_FALSE;
@@ -48,36 +80,58 @@ static PetscErrorCode Look(EqmSoup soup, const char *file, PetscBool *sound, Pet
   if (!error) error = HasDensity(soup->comm, file, &has_density);
   if (!error && has_density) error = EqmSoupReadDensity(there, file);
   if (!error) error = EqmSoupComputeIdentity(there, &found);
+  if (!error) error = AskOfMap(soup->comm, file, map_there, sizeof(map_there));
   PetscCall(PetscPopErrorHandler());
+  PetscCall(PetscStrcmp(map_there, map_checksum, &same_map));
   *sound = (PetscBool)!error;
-  *same = (PetscBool)(!error && found == wanted && has_density == (PetscBool)(soup->density != NULL));
+  *same = (PetscBool)(!error && same_map && found == wanted && has_density == (PetscBool)(soup->density != NULL));
   PetscCall(EqmSoupDestroy(&there));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmKeptMeshWrite(EqmSoup soup, const char *checkpoint, PetscBool resumed)
+PetscErrorCode EqmKeptMeshWrite(EqmSoup soup, EqmMap map, const char *name, PetscBool resumed)
 {
-  char name[PETSC_MAX_PATH_LEN], message[EQM_MESSAGE_MAX] = "";
+  char message[EQM_MESSAGE_MAX] = "", text[32] = "";
+  PetscInt64 checksum;
   PetscErrorCode error;
   PetscMPIInt rank;
   PetscBool sound, same;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
-  PetscCall(EqmKeptMeshName(checkpoint, name, sizeof(name)));
   if (rank == 0) EqmAtomicSweep(name);
-  PetscCall(Look(soup, name, &sound, &same));
+  PetscCall(ChecksumOfMap(map, &checksum));
+  if (map) PetscCall(PetscSNPrintf(text, sizeof(text), "%" PetscInt64_FMT, checksum));
+  PetscCall(Look(soup, text, name, &sound, &same));
   if (same || (sound && resumed)) PetscFunctionReturn(0);
+  if (map) PetscCall(EqmMapAddText(map, checksum_key, text));
   PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
-  error = EqmSoupWriteHdf5(soup, name);
+  error = map ? EqmMapWriteResult(map, name) : EqmSoupWriteHdf5(soup, name);
   PetscCall(PetscPopErrorHandler());
   if (error)
     PetscCall(EqmWarn(soup->comm, message, "; the run goes on, and to resume it the mesh itself must be there"));
   PetscFunctionReturn(0);
 }
 
-/* What a checkpoint says of the copy; empty: nothing, or it cannot be read. */
-static PetscErrorCode Ask(MPI_Comm comm, const char *checkpoint, char *name, size_t length)
+PetscErrorCode EqmKeptMeshCheckMap(EqmMap map, const char *name)
+{
+  char was[32], is[32];
+  PetscInt64 checksum;
+  PetscBool same;
+
+  PetscFunctionBegin;
+  PetscCall(AskOfMap(map->soup->comm, name, was, sizeof(was)));
+  PetscCall(ChecksumOfMap(map, &checksum));
+  PetscCall(PetscSNPrintf(is, sizeof(is), "%" PetscInt64_FMT, checksum));
+  PetscCall(PetscStrcmp(was, is, &same));
+  if (!same)
+    EqmFail(map->soup->comm, EQM_ERR_CHECKPOINT,
+            "'%s' is damaged: its map's checksum is wrong; name the files as before", name);
+  PetscFunctionReturn(0);
+}
+
+/* What a checkpoint says of its copies; empty: nothing, or it cannot be read. */
+static PetscErrorCode Ask(MPI_Comm comm, const char *checkpoint, char *names, size_t length)
 {
   char message[EQM_MESSAGE_MAX];
   PetscErrorCode error;
@@ -85,21 +139,21 @@ static PetscErrorCode Ask(MPI_Comm comm, const char *checkpoint, char *name, siz
   EqmH5 h5;
 
   PetscFunctionBegin;
-  name[0] = '\0';
+  names[0] = '\0';
   PetscCall(EqmFileIsThere(comm, checkpoint, &there));
   if (!there) PetscFunctionReturn(0);
   PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
   error = EqmH5Open(comm, checkpoint, &h5);
   PetscCall(PetscPopErrorHandler());
   if (error) PetscFunctionReturn(0);
-  PetscCall(EqmH5GetText(h5, EQM_KEPT_MESH, "", name, length));
+  PetscCall(EqmH5GetText(h5, EQM_KEPT_MESH, "", names, length));
   PetscCall(EqmH5Close(&h5));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmKeptMeshFind(MPI_Comm comm, const char *checkpoint, char *name, size_t length, PetscBool *has_density)
+PetscErrorCode EqmKeptMeshAsk(MPI_Comm comm, const char *checkpoint, PetscInt number, char *entry, size_t length)
 {
-  char previous[PETSC_MAX_PATH_LEN], folder[PETSC_MAX_PATH_LEN], copy[PETSC_MAX_PATH_LEN];
+  char previous[PETSC_MAX_PATH_LEN], names[PETSC_MAX_PATH_LEN], *begin = names;
   PetscBool there, before;
 
   PetscFunctionBegin;
@@ -107,8 +161,25 @@ PetscErrorCode EqmKeptMeshFind(MPI_Comm comm, const char *checkpoint, char *name
   PetscCall(EqmFileIsThere(comm, checkpoint, &there));
   PetscCall(EqmFileIsThere(comm, previous, &before));
   if (!there && !before) EqmFail(comm, EQM_ERR_IO, "-restart %s: there is no such file", checkpoint);
-  PetscCall(Ask(comm, checkpoint, copy, sizeof(copy)));
-  if (!copy[0]) PetscCall(Ask(comm, previous, copy, sizeof(copy)));
+  PetscCall(Ask(comm, checkpoint, names, sizeof(names)));
+  if (!names[0]) PetscCall(Ask(comm, previous, names, sizeof(names)));
+  for (PetscInt k = 0; k < number && begin; k++) {
+    begin = strchr(begin, ',');
+    if (begin) begin++;
+  }
+  PetscCall(PetscStrncpy(entry, begin ? begin : "", length));
+  entry[strcspn(entry, ",")] = '\0';
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmKeptMeshFind(MPI_Comm comm, const char *checkpoint, PetscInt number, char *name, size_t length,
+                               PetscBool *has_density)
+{
+  char folder[PETSC_MAX_PATH_LEN], copy[PETSC_MAX_PATH_LEN];
+  PetscBool there;
+
+  PetscFunctionBegin;
+  PetscCall(EqmKeptMeshAsk(comm, checkpoint, number, copy, sizeof(copy)));
   if (!copy[0]) {
     EqmFail(comm, EQM_ERR_CHECKPOINT, "-restart %s: it has no mesh of its own, or is damaged; name the mesh as before",
             checkpoint);

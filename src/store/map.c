@@ -1,7 +1,7 @@
 /* The answer as an object; a map read from a file. */
 #include "store.h"
 #include "h5.h"
-#include <petscsf.h>
+#include "base/rows.h"
 #include <string.h>
 
 /* An empty answer for a soup that must outlive it: coordinates and ratios zero, nothing run yet. Errors: none of its
@@ -114,26 +114,14 @@ static PetscErrorCode ReadResult(EqmSoup soup, const char *file, EqmMap *map)
 static PetscErrorCode Redeal(EqmSoup from, EqmSoup to, PetscReal *values)
 {
   const PetscInt count = to->vertex_end - to->vertex_start;
-  PetscLayout layout;
   PetscInt *wanted;
-  PetscSF sf;
-  MPI_Datatype point;
 
   PetscFunctionBegin;
-  PetscCall(
-      PetscLayoutCreateFromSizes(from->comm, from->vertex_end - from->vertex_start, from->num_vertices, 1, &layout));
   PetscCall(PetscMalloc1(count, &wanted));
   for (PetscInt i = 0; i < count; i++) wanted[i] = to->vertex_start + i;
-  PetscCall(PetscSFCreate(from->comm, &sf));
-  PetscCall(PetscSFSetGraphLayout(sf, layout, count, NULL, PETSC_COPY_VALUES, wanted));
+  PetscCall(EqmFetchRows(from->comm, from->vertex_end - from->vertex_start, count, wanted, MPIU_REAL, 3, from->vertices,
+                         values));
   PetscCall(PetscFree(wanted));
-  PetscCallMPI(MPI_Type_contiguous(3, MPIU_REAL, &point));
-  PetscCallMPI(MPI_Type_commit(&point));
-  PetscCall(PetscSFBcastBegin(sf, point, from->vertices, values, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, point, from->vertices, values, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&point));
-  PetscCall(PetscSFDestroy(&sf));
-  PetscCall(PetscLayoutDestroy(&layout));
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,6 @@
 /* The map of a mended mesh, brought back onto the mesh that the user gave. */
 #include <equimap/map.h>
+#include "base/rows.h"
 #include <petscsf.h>
 
 /* Copy `width` reals per vertex from the slabs of the mended soup to those of the input, whose vertices kept their
@@ -7,26 +8,14 @@
 static PetscErrorCode FetchVertices(EqmSoup mended, EqmSoup input, PetscInt width, const PetscReal *from, PetscReal *to)
 {
   const PetscInt count = input->vertex_end - input->vertex_start;
-  MPI_Datatype row;
-  PetscLayout layout;
   PetscInt *wanted;
-  PetscSF sf;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(count, &wanted));
   for (PetscInt i = 0; i < count; i++) wanted[i] = input->vertex_start + i;
-  PetscCall(PetscLayoutCreateFromSizes(mended->comm, mended->vertex_end - mended->vertex_start, mended->num_vertices, 1,
-                                       &layout));
-  PetscCall(PetscSFCreate(mended->comm, &sf));
-  PetscCall(PetscSFSetGraphLayout(sf, layout, count, NULL, PETSC_COPY_VALUES, wanted));
+  PetscCall(
+      EqmFetchRows(mended->comm, mended->vertex_end - mended->vertex_start, count, wanted, MPIU_REAL, width, from, to));
   PetscCall(PetscFree(wanted));
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &row));
-  PetscCallMPI(MPI_Type_commit(&row));
-  PetscCall(PetscSFBcastBegin(sf, row, from, to, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, row, from, to, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&row));
-  PetscCall(PetscSFDestroy(&sf));
-  PetscCall(PetscLayoutDestroy(&layout));
   PetscFunctionReturn(0);
 }
 

@@ -122,18 +122,18 @@ static PetscErrorCode TestKeptMesh(void)
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  PetscCall(EqmKeptMeshName("a.b/run", name, sizeof(name)));
+  PetscCall(EqmKeptMeshName("a.b/run", NULL, name, sizeof(name)));
   CHECK(!strcmp(name, "a.b/run.mesh.h5"), "%s", name);
-  PetscCall(EqmKeptMeshName("run.ck.h5", name, sizeof(name)));
+  PetscCall(EqmKeptMeshName("run.ck.h5", NULL, name, sizeof(name)));
   CHECK(!strcmp(name, "run.ck.mesh.h5"), "%s", name);
   PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "hills", 300, 1, &soup));
-  PetscCall(EqmKeptMeshWrite(soup, "run.ck.h5", PETSC_FALSE));
+  PetscCall(EqmKeptMeshWrite(soup, NULL, name, PETSC_FALSE));
   PetscCall(EqmSoupDestroy(&soup));
   for (size_t k = 0; k < sizeof(steps) / sizeof(steps[0]); k++) {
     if (steps[k].damage && rank == 0) CHECK(!truncate(name, 3000), "cannot cut %s", name);
     PetscCall(Stamp(name, &before));
     PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "hills", 300, steps[k].seed, &soup));
-    PetscCall(EqmKeptMeshWrite(soup, "run.ck.h5", steps[k].resumed));
+    PetscCall(EqmKeptMeshWrite(soup, NULL, name, steps[k].resumed));
     PetscCall(Stamp(name, &after));
     CHECK((before.st_ino != after.st_ino) == (steps[k].written == PETSC_TRUE), "step %d", (int)k);
     PetscCall(EqmKeptMeshRead(PETSC_COMM_WORLD, name, &back));
