@@ -5,7 +5,8 @@
 #   find_launcher              sets `launcher`: $EQUIMAP_MPIRUN, else mpirun on $ranks ranks; deaf to TERM
 #   with_checkpoint ARGS...    sets `arguments`: ARGS with a checkpoint beside the output, and -restart where one lies there
 #   watch_the_clock SECONDS    adds -wall_time to them, for a job that has so long and is not warned before its end
-#   run_and_forward COMMAND... runs it, hands USR1 and TERM on as USR1; sets `told` to the last of them, `code` to its exit code
+#   run_and_forward COMMAND... runs it, hands USR1 and TERM on as USR1; sets `told` to the last of them, `code` to its exit code,
+#                              75 also where one of them or a preemption, which `preempted` knows of, has ended the launcher
 #   finish                     ends the script with `code`; after 75, puts the job back into the queue with `requeue`, at most
 #                              $EQUIMAP_REQUEUES times (20), `attempt` being how often that has happened already, and not if
 #                              `withheld` says why not
@@ -97,7 +98,10 @@ run_and_forward() {
     0 | [2-7] | "$stopped") ;;
     *)
       sleep 1
-      [ -z "$told" ] || { say "the launcher ended with code $code"; code=$stopped; }
+      if [ -n "$told" ] || preempted; then
+        say "the launcher ended with code $code"
+        code=$stopped
+      fi
       ;;
   esac
   trap '' USR1 TERM # what is left is short, and must not be cut short
@@ -110,6 +114,8 @@ forget_checkpoint() {
   fi
 }
 
+# What a batch system that can tell overrides.
+preempted() { return 1; }
 withheld() { return 1; }
 
 finish() {
@@ -134,7 +140,10 @@ sweep_row() {
   local row=$1
   shift
   say "sweep ${row:+row $row }$*, attempt $((attempt + 1))"
-  run_and_forward "$jobs_dir/sweep.py" "$@" ${row:+--rows "$row" --no-collect}
+  # What ended an earlier attempt at a row was no failure of its own.
+  [ -z "$row" ] || set -- "$@" --rows "$row" --no-collect
+  [ -z "$row" ] || [ "$attempt" -eq 0 ] || set -- "$@" --retry
+  run_and_forward "$jobs_dir/sweep.py" "$@"
   finish
 }
 
@@ -153,12 +162,15 @@ watch_the_clock() {
 # ---- Slurm
 # The job's name for scontrol. Of the last task of an array the plain number would mean the whole array.
 slurm_job() { echo "${SLURM_ARRAY_JOB_ID:+${SLURM_ARRAY_JOB_ID}_}${SLURM_ARRAY_TASK_ID:-$SLURM_JOB_ID}"; }
+slurm_shown() { scontrol --oneliner show job "$(slurm_job)"; }
 slurm_requeue() { scontrol requeue "$(slurm_job)"; }
+# On several nodes the signal at the beginning of the grace time ends mpirun's daemons, and does not get to the batch script.
+slurm_preempted() { [[ $(slurm_shown) =~ " PreemptTime="[0-9] ]]; }
 # A job that is COMPLETING while its script still runs has been ended by Slurm: its time is up, somebody has put it back into
 # the queue (which Restarts counts at once), or it is cancelled. Slurm would requeue that, too.
 slurm_withheld() {
   local job
-  job=$(scontrol --oneliner show job "$(slurm_job)")
+  job=$(slurm_shown)
   [[ $job =~ " JobState="(COMPLETING|CANCELLED|PREEMPTED|REQUEUED|PENDING)" " && $job != *" Reason=TimeLimit "* ]] || return 1
   if [[ $job =~ " Restarts="([0-9]+) && ${BASH_REMATCH[1]} -gt $attempt ]]; then
     echo "Slurm has put it back into the queue"

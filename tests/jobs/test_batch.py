@@ -99,6 +99,33 @@ def check_launcher():
     assert "ended with exit code 1" in said and "back into the queue" not in said, said
 
 
+def check_slurm():
+    """What test_slurm.py cannot bring about: a time limit without a warning, and a preemption that ends mpirun's daemons on other
+    nodes and says nothing to the script."""
+    stand_in("scontrol", 'echo "$*" >>scontrol.log; [ "$1" = requeue ] || echo "JobId=9 $SHOWN Restarts=0 "')
+    stand_in("ends", "exit $ENDS_WITH")
+    given = {"EQUIMAP_JOBS": str(JOBS), "EQUIMAP_MPIRUN": "ends", "SLURM_JOB_ID": "9", "SLURM_JOB_NODELIST": "n[1-2]"}
+    preempted = "JobState=RUNNING Reason=None PreemptTime=2026-01-01T00:00:00"
+    for shown, code, expected, requeued in (
+            ("JobState=RUNNING Reason=None PreemptTime=None", 75, 75, True),
+            ("JobState=RUNNING Reason=None PreemptTime=None", 205, 205, False),
+            (preempted, 205, 75, True),
+            (preempted, 5, 5, False),
+            ("JobState=COMPLETING Reason=TimeLimit", 75, 75, True),
+            ("JobState=COMPLETING Reason=None", 75, 75, False)):
+        pathlib.Path("scontrol.log").write_text("")
+        said = script("run.slurm", *shlex.split(COMMAND.format(name="slurm")), expected=expected, SHOWN=shown, ENDS_WITH=str(code),
+                      **given)
+        assert ("back into the queue (1 of at most 20)" in said) == requeued, (shown, code, said)
+        assert ("requeue 9\n" in pathlib.Path("scontrol.log").read_text()) == requeued, (shown, code, said)
+    # a row of a sweep has failed by that, and is run again
+    given.update(SLURM_ARRAY_JOB_ID="7", SLURM_ARRAY_TASK_ID="2", SHOWN=preempted, EQUIMAP_RESULTS="slurm-swept")
+    said = script("sweep.slurm", "t.csv", expected=75, ENDS_WITH="205", **given)
+    assert "failed: row 2" in said and "requeue 7_2\n" in pathlib.Path("scontrol.log").read_text(), said
+    said = script("sweep.slurm", "t.csv", expected=0, SLURM_RESTART_COUNT="1", **{**given, "EQUIMAP_MPIRUN": ""})
+    assert "1 finished" in said, said
+
+
 def check_lsf():
     """Code 75, for which LSF requeues the job, as long as there is a turn left; 1 afterwards."""
     write_options("lsf")
@@ -177,6 +204,7 @@ def main(program):
     os.environ.update(EQUIMAP=program, PATH=f"{os.getcwd()}/bin:{os.environ['PATH']}")
     check_pbs()
     check_launcher()
+    check_slurm()
     check_lsf()
     check_submit()
     print("batch: PBS and LSF stopped, gone on with and capped; submit.py says what it should and refuses what it must")
