@@ -86,7 +86,7 @@ PetscErrorCode EqmPlaceCenter(EqmDomain domain, const PetscReal *mass, EqmPlace 
   PetscCall(EqmPlaceCreate(domain, &trial));
   PetscCall(EqmPlaceMassCenter(domain, mass, place, center));
   *offset = PetscSqrtReal(EqmDot3(center, center));
-  for (PetscInt step = 0; step<MOST_STEPS && * offset> tolerance; step++) {
+  for (PetscInt step = 0; step < MOST_STEPS && (*offset) > tolerance; step++) {
     PetscReal distance = PETSC_MAX_REAL;
     PetscCall(CenteringShift(domain, mass, place, center, shift));
     for (PetscInt cut = 0; cut < MOST_CUTS && !(distance < *offset); cut++) {

@@ -120,8 +120,6 @@ PETSC_INTERN PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsOb
 PETSC_INTERN PetscErrorCode EqmLinearPassOptions(PetscOptions options);
 PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
                                             EqmMatrixUse use, EqmLinear *linear);
-PETSC_INTERN PetscErrorCode EqmLinearEstimate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
-                                              EqmEstimate *estimate, PetscBool *fits);
 PETSC_INTERN PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmLinearDestroy(EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context,

@@ -1,4 +1,4 @@
-/* One face for the direct solvers and multigrid. */
+/* One face for the direct solvers and multigrid: which of them a matrix gets. What it does then: linear_solve.c. */
 #include "linalg/linalg.h"
 
 const char *const EqmSolverKinds[] = {"auto",      "cholmod",       "substructure", "mumps",
@@ -124,6 +124,7 @@ static PetscErrorCode Obey(EqmLinear linear, EqmOrdering ordering, EqmSolverKind
   PetscFunctionReturn(0);
 }
 
+/* A solver of no kind yet. */
 static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use, EqmLinear *linear)
 {
   PetscFunctionBegin;
@@ -156,27 +157,6 @@ PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnkn
   PetscFunctionReturn(0);
 }
 
-/* What an exact factorisation would take, and whether every rank has the memory; nothing is factored. Collective. */
-PetscErrorCode EqmLinearEstimate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, EqmEstimate *estimate,
-                                 PetscBool *fits)
-{
-  EqmLinear linear;
-  PetscReal limit;
-
-  PetscFunctionBegin;
-  PetscCall(EqmMemoryLimit(mesh->comm, &limit));
-  PetscCall(Begin(mesh, unknowns, EQM_MATRIX_COUPLED, &linear));
-  PetscCall(Try(linear, ordering, mesh->size == 1 ? EQM_SOLVER_CHOLMOD : EQM_SOLVER_SUBSTRUCTURE));
-  if (linear->estimate.largest_front > MOST_FRONT) {
-    PetscCall(Release(linear));
-    PetscCall(Try(linear, ordering, EQM_SOLVER_MUMPS));
-  }
-  PetscCall(FitsInMemory(linear, limit, fits));
-  *estimate = linear->estimate;
-  PetscCall(EqmLinearDestroy(&linear));
-  PetscFunctionReturn(0);
-}
-
 /* One line on what solves and what it takes. Not collective. */
 PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length)
 {
@@ -206,132 +186,5 @@ PetscErrorCode EqmLinearDestroy(EqmLinear *linear)
   if (!*linear) PetscFunctionReturn(0);
   PetscCall(Release(*linear));
   PetscCall(PetscFree(*linear));
-  PetscFunctionReturn(0);
-}
-
-/* Multiply the diagonal: the smallest shift that makes a singular matrix definite without moving its solution. */
-static PetscErrorCode ScaleDiagonal(Mat matrix, PetscReal factor)
-{
-  Mat diagonal_block;
-  const PetscInt *start, *column;
-  PetscInt n;
-  PetscScalar *value;
-  PetscBool done;
-
-  PetscFunctionBegin;
-  PetscCall(MatGetDiagonalBlock(matrix, &diagonal_block));
-  PetscCall(MatGetRowIJ(diagonal_block, 0, PETSC_FALSE, PETSC_FALSE, &n, &start, &column, &done));
-  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no access to the rows of a matrix");
-  PetscCall(MatSeqAIJGetArray(diagonal_block, &value));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscInt place;
-    PetscCall(PetscFindInt(i, start[i + 1] - start[i], column + start[i], &place));
-    if (place >= 0) value[start[i] + place] *= factor;
-  }
-  PetscCall(MatSeqAIJRestoreArray(diagonal_block, &value));
-  PetscCall(MatRestoreRowIJ(diagonal_block, 0, PETSC_FALSE, PETSC_FALSE, &n, &start, &column, &done));
-  PetscFunctionReturn(0);
-}
-
-/* Assemble the cells' matrices, multiply the diagonal by `diagonal_factor` and factor. `success` is false on every rank
-   if the matrix is not numerically positive definite. Counts a factorisation. Collective. */
-PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context, PetscReal diagonal_factor,
-                               PetscBool *success)
-{
-  EqmWork *work;
-  Mat matrix;
-
-  PetscFunctionBegin;
-  linear->cell_matrix = cell_matrix;
-  linear->context = context;
-  if (linear->padded_cell)
-    PetscCall(EqmAssemblyFill(linear->assembly, linear->padded_cell, linear));
-  else
-    PetscCall(EqmAssemblyFill(linear->assembly, cell_matrix, context));
-  PetscCall(EqmAssemblyGetMat(linear->assembly, &matrix));
-  if (diagonal_factor != 1.) PetscCall(ScaleDiagonal(matrix, diagonal_factor));
-  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
-  PetscCall(linear->factor(linear, success));
-  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
-  PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
-  work->factorizations++;
-  if (linear->use != EQM_MATRIX_SCALAR) work->coupled_factorizations++;
-  PetscFunctionReturn(0);
-}
-
-/* x = B b with a fixed symmetric definite B near A^-1: the factor's inverse itself, or one multigrid cycle. What turns
-   gradients into directions asks for no more, and a truncated iteration would not be linear. Columns as for
-   EqmLinearSolve. Collective. */
-PetscErrorCode EqmLinearApply(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
-{
-  EqmWork *work;
-
-  PetscFunctionBegin;
-  if (!linear->apply) {
-    PetscCall(EqmLinearSolve(linear, num_rhs, b, x));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_SOLVE));
-  PetscCall(linear->apply(linear, num_rhs, b, x));
-  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_SOLVE));
-  PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
-  work->solves += num_rhs;
-  PetscFunctionReturn(0);
-}
-
-/* Steps need no exact solutions: iterations may stop at this reduction of the error's estimate in the energy norm;
-   exact factors stay exact. For the factorisations to come. Not collective. */
-PetscErrorCode EqmLinearSetInexact(EqmLinear linear, PetscReal tolerance)
-{
-  PetscFunctionBegin;
-  linear->inexact = PETSC_TRUE;
-  linear->tolerance = tolerance;
-  PetscFunctionReturn(0);
-}
-
-/* Fields that the matrix hardly sees, columns of this rank's unknowns: coarse grids then hold them. For the
-   factorisations to come; exact factors need none. Collective. */
-PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count, const PetscReal *fields)
-{
-  PetscFunctionBegin;
-  if (linear->set_fields) PetscCall(linear->set_fields(linear, count, fields));
-  PetscFunctionReturn(0);
-}
-
-/* x = A^-1 b for several right-hand sides, stored one after the other, each of this rank's unknowns; x and b may be the
-   same array. `success` is false on every rank if an iteration has not come to its tolerance, which is how it finds
-   that a matrix is not definite. A solution that is not finite is an error, never an answer. Collective. */
-PetscErrorCode EqmLinearTrySolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x,
-                                 PetscBool *success)
-{
-  EqmWork *work;
-  PetscReal bad = 0., worst;
-
-  PetscFunctionBegin;
-  *success = PETSC_TRUE;
-  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_SOLVE));
-  PetscCall(linear->solve(linear, num_rhs, b, x, success));
-  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_SOLVE));
-  PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
-  work->solves += num_rhs;
-  if (!*success) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < num_rhs * linear->num_owned; k++) {
-    if (PetscIsInfOrNanReal(x[k])) bad = 1.;
-  }
-  PetscCall(MPIU_Allreduce(&bad, &worst, 1, MPIU_REAL, MPIU_MAX, linear->mesh->comm));
-  PetscCheck(worst == 0., linear->mesh->comm, PETSC_ERR_FP, "the solution of a linear system is not finite");
-  PetscFunctionReturn(0);
-}
-
-/* The same where anything but a solution is an error. Collective. */
-PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
-{
-  PetscBool success;
-
-  PetscFunctionBegin;
-  PetscCall(EqmLinearTrySolve(linear, num_rhs, b, x, &success));
-  PetscCheck(success, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
-             "multigrid did not converge: the matrix may not be definite; try -linear_solver %s",
-             linear->mesh->size == 1 ? "cholmod" : "mumps");
   PetscFunctionReturn(0);
 }

@@ -120,8 +120,14 @@ static int CompareTails(const void *a, const void *b)
   return (s > t) - (s < t);
 }
 
-/* Walk along the loop: `place` and `arc` of each edge's tail, the edges sorted by tail. */
-static PetscErrorCode WalkLoop(PetscInt n, const LoopEdge *edge, PetscInt *place, PetscReal *arc, PetscBool *closed)
+/* Where its tail is: which vertex of the loop, and its arc length in [0, 1). */
+typedef struct {
+  PetscInt place;
+  PetscReal arc;
+} LoopPlace;
+
+/* Walk along the loop from the edge that the file has first; the edges are sorted by tail. */
+static PetscErrorCode WalkLoop(PetscInt n, const LoopEdge *edge, LoopPlace *tail_at, PetscBool *closed)
 {
   PetscInt first = 0, current, *tail;
   PetscReal length = 0.;
@@ -130,34 +136,61 @@ static PetscErrorCode WalkLoop(PetscInt n, const LoopEdge *edge, PetscInt *place
   PetscCall(PetscMalloc1(n, &tail));
   for (PetscInt e = 0; e < n; e++) {
     tail[e] = edge[e].tail;
-    place[e] = -1;
+    tail_at[e].place = -1;
     if (edge[e].order < edge[first].order) first = e;
   }
   current = first;
-  for (PetscInt k = 0; k < n && current >= 0 && place[current] < 0; k++) {
-    place[current] = k;
-    arc[current] = length;
+  for (PetscInt k = 0; k < n && current >= 0 && tail_at[current].place < 0; k++) {
+    tail_at[current] = (LoopPlace){k, length};
     length += edge[current].length;
     PetscCall(PetscFindInt(edge[current].head, n, tail, &current));
   }
   *closed = (PetscBool)(n > 0 && current == first);
   for (PetscInt e = 0; e < n; e++) {
-    *closed = (PetscBool)(*closed && place[e] >= 0);
-    arc[e] /= length;
+    *closed = (PetscBool)(*closed && tail_at[e].place >= 0);
+    tail_at[e].arc /= length;
   }
   PetscCall(PetscFree(tail));
   PetscFunctionReturn(0);
 }
 
-/* Order the loop's edges on rank 0, which holds n_B edges for this moment, and hand place and arc length back in the
-   order in which the edges came. */
-static PetscErrorCode OrderLoopOnRoot(EqmMesh mesh, PetscInt n, LoopEdge *mine, PetscInt *place, PetscReal *arc)
+/* The same for edges in any order. Not collective. */
+static PetscErrorCode OrderLoop(PetscInt n, const LoopEdge *edge, LoopPlace *tail_at, PetscBool *closed)
 {
-  PetscMPIInt *count, *start, num_mine, width = (PetscMPIInt)sizeof(LoopEdge);
+  LoopEdge *sorted;
+  LoopPlace *walked;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(n, &sorted, n, &walked));
+  PetscCall(PetscArraycpy(sorted, edge, n));
+  qsort(sorted, (size_t)n, sizeof(LoopEdge), CompareTails);
+  PetscCall(WalkLoop(n, sorted, walked, closed));
+  for (PetscInt e = 0; e < n; e++) {
+    const LoopEdge *const found = bsearch(&edge[e], sorted, (size_t)n, sizeof(LoopEdge), CompareTails);
+    tail_at[e] = walked[found - sorted];
+  }
+  PetscCall(PetscFree2(sorted, walked));
+  PetscFunctionReturn(0);
+}
+
+/* A datatype of so many bytes. */
+static PetscErrorCode MakeRecord(size_t bytes, MPI_Datatype *record)
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)bytes, MPI_BYTE, record));
+  PetscCallMPI(MPI_Type_commit(record));
+  PetscFunctionReturn(0);
+}
+
+/* Order the loop's edges on rank 0, which holds n_B edges for this moment, and hand the places of their tails
+   back. */
+static PetscErrorCode OrderLoopOnRoot(EqmMesh mesh, PetscInt n, const LoopEdge *mine, LoopPlace *tail_at)
+{
+  PetscMPIInt *count, *start, num_mine;
   LoopEdge *all = NULL;
-  PetscReal *answer, *all_answers = NULL;
+  LoopPlace *all_places = NULL;
   PetscBool closed = PETSC_TRUE;
-  MPI_Datatype edge_type;
+  MPI_Datatype edge_type, place_type;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(mesh->size, &count, mesh->size + 1, &start));
@@ -165,56 +198,33 @@ static PetscErrorCode OrderLoopOnRoot(EqmMesh mesh, PetscInt n, LoopEdge *mine, 
   PetscCallMPI(MPI_Allgather(&num_mine, 1, MPI_INT, count, 1, MPI_INT, mesh->comm));
   start[0] = 0;
   for (PetscMPIInt p = 0; p < mesh->size; p++) start[p + 1] = start[p] + count[p];
-  PetscCallMPI(MPI_Type_contiguous(width, MPI_BYTE, &edge_type));
-  PetscCallMPI(MPI_Type_commit(&edge_type));
-  PetscCall(PetscMalloc1(2 * n, &answer));
-  if (mesh->rank == 0) PetscCall(PetscMalloc2(start[mesh->size], &all, 2 * start[mesh->size], &all_answers));
+  if (mesh->rank == 0) PetscCall(PetscMalloc2(start[mesh->size], &all, start[mesh->size], &all_places));
+  PetscCall(MakeRecord(sizeof(LoopEdge), &edge_type));
+  PetscCall(MakeRecord(sizeof(LoopPlace), &place_type));
   PetscCallMPI(MPI_Gatherv(mine, num_mine, edge_type, all, count, start, edge_type, 0, mesh->comm));
+  if (mesh->rank == 0) PetscCall(OrderLoop(start[mesh->size], all, all_places, &closed));
+  PetscCallMPI(MPI_Scatterv(all_places, count, start, place_type, tail_at, num_mine, place_type, 0, mesh->comm));
   PetscCallMPI(MPI_Type_free(&edge_type));
-  PetscCallMPI(MPI_Type_contiguous(2, MPIU_REAL, &edge_type));
-  PetscCallMPI(MPI_Type_commit(&edge_type));
-  if (mesh->rank == 0) {
-    const PetscInt total = start[mesh->size];
-    PetscInt *all_place;
-    PetscReal *all_arc;
-    LoopEdge *sorted;
-    PetscCall(PetscMalloc3(total, &all_place, total, &all_arc, total, &sorted));
-    PetscCall(PetscArraycpy(sorted, all, total));
-    qsort(sorted, (size_t)total, sizeof(LoopEdge), CompareTails);
-    PetscCall(WalkLoop(total, sorted, all_place, all_arc, &closed));
-    for (PetscInt e = 0; e < total; e++) { /* back to the order of arrival */
-      const LoopEdge *const found = bsearch(&all[e], sorted, (size_t)total, sizeof(LoopEdge), CompareTails);
-      all_answers[2 * e] = (PetscReal)all_place[found - sorted];
-      all_answers[2 * e + 1] = all_arc[found - sorted];
-    }
-    PetscCall(PetscFree3(all_place, all_arc, sorted));
-  }
-  PetscCallMPI(MPI_Scatterv(all_answers, count, start, edge_type, answer, num_mine, edge_type, 0, mesh->comm));
-  PetscCallMPI(MPI_Type_free(&edge_type));
+  PetscCallMPI(MPI_Type_free(&place_type));
+  if (mesh->rank == 0) PetscCall(PetscFree2(all, all_places));
+  PetscCall(PetscFree2(count, start));
   PetscCallMPI(MPI_Bcast(&closed, 1, MPIU_BOOL, 0, mesh->comm));
   if (!closed)
     EqmFail(mesh->comm, EQM_ERR_MESH, "the boundary is not one closed loop; 'equimap check' says what is wrong");
-  for (PetscInt e = 0; e < n; e++) {
-    place[e] = (PetscInt)answer[2 * e];
-    arc[e] = answer[2 * e + 1];
-  }
-  if (mesh->rank == 0) PetscCall(PetscFree2(all, all_answers));
-  PetscCall(PetscFree(answer));
-  PetscCall(PetscFree2(count, start));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmMeshBoundaryLoop(EqmMesh mesh, PetscInt *place, PetscReal *arc_length)
 {
   const PetscInt num_facets = mesh->num_boundary_facets;
-  PetscInt n = 0, *edge_place;
-  PetscReal *edge_arc, *both;
+  PetscInt n = 0;
+  PetscReal *both;
   LoopEdge *edge;
+  LoopPlace *tail_at;
 
   PetscFunctionBegin;
   PetscCheck(mesh->cell_size == 3, mesh->comm, PETSC_ERR_ARG_WRONG, "only the boundary of a surface is a loop");
-  PetscCall(
-      PetscMalloc4(num_facets, &edge, num_facets, &edge_place, num_facets, &edge_arc, 2 * mesh->num_local, &both));
+  PetscCall(PetscMalloc3(num_facets, &edge, num_facets, &tail_at, 2 * mesh->num_local, &both));
   for (PetscInt e = 0; e < num_facets; e++) {
     const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
     const PetscReal *const p = mesh->position + 3 * i, *const q = mesh->position + 3 * j;
@@ -224,18 +234,18 @@ PetscErrorCode EqmMeshBoundaryLoop(EqmMesh mesh, PetscInt *place, PetscReal *arc
     edge[n].order = mesh->boundary_order[e];
     edge[n++].length = PetscSqrtReal(PetscSqr(p[0] - q[0]) + PetscSqr(p[1] - q[1]) + PetscSqr(p[2] - q[2]));
   }
-  PetscCall(OrderLoopOnRoot(mesh, n, edge, edge_place, edge_arc));
+  PetscCall(OrderLoopOnRoot(mesh, n, edge, tail_at));
   for (PetscInt k = 0; k < 2 * mesh->num_local; k++) both[k] = -1.;
   for (PetscInt e = 0; e < n; e++) {
     const PetscInt i = edge[e].tail - mesh->vertex_start;
-    both[2 * i] = (PetscReal)edge_place[e];
-    both[2 * i + 1] = edge_arc[e];
+    both[2 * i] = (PetscReal)tail_at[e].place;
+    both[2 * i + 1] = tail_at[e].arc;
   }
   PetscCall(EqmMeshUpdateGhosts(mesh, 2, both));
   for (PetscInt i = 0; i < mesh->num_local; i++) {
     place[i] = (PetscInt)both[2 * i];
     arc_length[i] = both[2 * i + 1];
   }
-  PetscCall(PetscFree4(edge, edge_place, edge_arc, both));
+  PetscCall(PetscFree3(edge, tail_at, both));
   PetscFunctionReturn(0);
 }

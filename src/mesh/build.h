@@ -19,10 +19,6 @@ typedef struct {
   PetscInt *neighbor; /* start[num_rows] */
 } EqmGraph;
 
-typedef enum { EQM_TO_SLAB, EQM_FROM_SLAB } EqmDirection;
-
-PETSC_INTERN PetscErrorCode EqmMoveReals(PetscSF sf, PetscInt width, EqmDirection direction, PetscReal *slab,
-                                         PetscReal *leaves);
 PETSC_INTERN PetscErrorCode EqmMeshNumberInOrder(EqmMesh mesh, PetscInt num_leaves, const PetscInt *leaf,
                                                  PetscInt *number);
 PETSC_INTERN PetscErrorCode EqmSoupComputeChecksum(EqmSoup soup);

@@ -1,6 +1,7 @@
 /* Collect the cells around each rank's slab of vertices. */
 #include "mesh/diagnose.h"
 #include "base/exchange.h"
+#include "base/rows.h"
 #include "energy/kernel.h"
 
 /* Tell whether a cell of the soup (its `cell_size` input vertex numbers) can be looked at. Not collective. */
@@ -125,16 +126,10 @@ static PetscErrorCode NumberVertices(EqmVicinity *vicinity)
 
 static PetscErrorCode CollectPositions(EqmSoup soup, EqmVicinity *vicinity)
 {
-  MPI_Datatype point;
-
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * vicinity->num_local, &vicinity->position));
   PetscCall(PetscArraycpy(vicinity->position, soup->vertices, 3 * vicinity->num_owned));
-  PetscCallMPI(MPI_Type_contiguous(3, MPIU_REAL, &point));
-  PetscCallMPI(MPI_Type_commit(&point));
-  PetscCall(PetscSFBcastBegin(vicinity->ghosts, point, vicinity->position, vicinity->position, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(vicinity->ghosts, point, vicinity->position, vicinity->position, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&point));
+  PetscCall(EqmRowsToLeaves(vicinity->ghosts, 3, vicinity->position, vicinity->position));
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
    closed surface (004 section 2.2). */
 #include "mesh/build.h"
 #include "base/exchange.h"
+#include "base/rows.h"
 
 /* The numbers on the covering of the surface's local vertices and of their twins: first all of the surface in input
    order, then the twins of the interior ones, also in input order. */
@@ -102,15 +103,15 @@ PetscErrorCode EqmDoubleFromHalves(EqmDouble covering, PetscInt width, const Pet
                                    PetscReal *slab)
 {
   PetscFunctionBegin;
-  PetscCall(EqmMoveReals(covering->twin, width, EQM_TO_SLAB, slab, (PetscReal *)twin));
-  PetscCall(EqmMoveReals(covering->original, width, EQM_TO_SLAB, slab, (PetscReal *)original));
+  PetscCall(EqmRowsToRoots(covering->twin, width, twin, slab));
+  PetscCall(EqmRowsToRoots(covering->original, width, original, slab));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmDoubleToOriginal(EqmDouble covering, PetscInt width, const PetscReal *slab, PetscReal *owned)
 {
   PetscFunctionBegin;
-  PetscCall(EqmMoveReals(covering->original, width, EQM_FROM_SLAB, (PetscReal *)slab, owned));
+  PetscCall(EqmRowsToLeaves(covering->original, width, slab, owned));
   PetscFunctionReturn(0);
 }
 

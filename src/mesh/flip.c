@@ -8,6 +8,7 @@
    edges with two yeses flip. */
 #include "mesh/build.h"
 #include "base/exchange.h"
+#include "base/rows.h"
 #include "energy/kernel.h"
 
 /* Edge and length k are opposite corner k. */
@@ -75,19 +76,12 @@ static PetscErrorCode MakeTriangles(EqmSoup soup, Flipper *f)
 {
   const PetscInt n = f->num_triangles;
   PetscReal *place;
-  PetscSF sf;
-  MPI_Datatype point;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(n, &f->triangle, n, &f->changed, n, &f->claimed));
   PetscCall(PetscMalloc1(9 * n, &place));
-  PetscCall(EqmSoupSlabSF(soup, 3 * n, soup->cells, &sf));
-  PetscCallMPI(MPI_Type_contiguous(3, MPIU_REAL, &point));
-  PetscCallMPI(MPI_Type_commit(&point));
-  PetscCall(PetscSFBcastBegin(sf, point, soup->vertices, place, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, point, soup->vertices, place, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&point));
-  PetscCall(PetscSFDestroy(&sf));
+  PetscCall(EqmFetchRows(soup->comm, soup->vertex_end - soup->vertex_start, 3 * n, soup->cells, MPIU_REAL, 3,
+                         soup->vertices, place));
   for (PetscInt t = 0; t < n; t++) {
     for (PetscInt a = 0; a < 3; a++) {
       const PetscReal *const p = place + 9 * t + 3 * ((a + 1) % 3), *const q = place + 9 * t + 3 * ((a + 2) % 3);

@@ -1,5 +1,6 @@
 /* The distributed mesh: made from a soup, destroyed, its ghosts refreshed. */
 #include "mesh/build.h"
+#include "base/rows.h"
 #include "energy/kernel.h"
 
 /* Local numbers: the input numbers of owned vertices (sorted), then those of the ghosts. */
@@ -163,10 +164,7 @@ static PetscErrorCode SortCells(EqmMesh mesh, const EqmStars *stars, const Petsc
 static PetscErrorCode CellReals(EqmSoup soup, const EqmStars *stars, const PetscInt *order, PetscInt width,
                                 const PetscReal *slab, PetscReal **reals)
 {
-  MPI_Datatype row;
   PetscInt *cell;
-  PetscLayout layout;
-  PetscSF sf;
 
   PetscFunctionBegin;
   *reals = NULL;
@@ -174,16 +172,8 @@ static PetscErrorCode CellReals(EqmSoup soup, const EqmStars *stars, const Petsc
   PetscCall(PetscMalloc1(width * stars->num_cells, reals));
   PetscCall(PetscMalloc1(stars->num_cells, &cell));
   for (PetscInt c = 0; c < stars->num_cells; c++) cell[c] = stars->records[stars->width * order[c]];
-  PetscCall(PetscLayoutCreateFromSizes(soup->comm, soup->cell_end - soup->cell_start, soup->num_cells, 1, &layout));
-  PetscCall(PetscSFCreate(soup->comm, &sf));
-  PetscCall(PetscSFSetGraphLayout(sf, layout, stars->num_cells, NULL, PETSC_OWN_POINTER, cell));
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &row));
-  PetscCallMPI(MPI_Type_commit(&row));
-  PetscCall(PetscSFBcastBegin(sf, row, slab, *reals, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, row, slab, *reals, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&row));
-  PetscCall(PetscSFDestroy(&sf));
-  PetscCall(PetscLayoutDestroy(&layout));
+  PetscCall(EqmFetchRows(soup->comm, soup->cell_end - soup->cell_start, stars->num_cells, cell, MPIU_REAL, width, slab,
+                         *reals));
   PetscCall(PetscFree(cell));
   PetscFunctionReturn(0);
 }
@@ -289,15 +279,9 @@ PetscErrorCode EqmMeshDestroy(EqmMesh *mesh)
 
 PetscErrorCode EqmMeshUpdateGhosts(EqmMesh mesh, PetscInt width, PetscReal *array)
 {
-  MPI_Datatype vertex_type;
-
   PetscFunctionBegin;
   if (mesh->size == 1) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &vertex_type));
-  PetscCallMPI(MPI_Type_commit(&vertex_type));
-  PetscCall(PetscSFBcastBegin(mesh->halo, vertex_type, array, array + width * mesh->num_owned, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(mesh->halo, vertex_type, array, array + width * mesh->num_owned, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&vertex_type));
+  PetscCall(EqmRowsToLeaves(mesh->halo, width, array, array + width * mesh->num_owned));
   PetscFunctionReturn(0);
 }
 

@@ -1,24 +1,6 @@
 /* Between the mesh's numbering and the input's. */
 #include "mesh/build.h"
-
-/* Move `width` reals per leaf of a star forest between its roots (a slab) and its leaves. Collective. */
-PetscErrorCode EqmMoveReals(PetscSF sf, PetscInt width, EqmDirection direction, PetscReal *slab, PetscReal *leaves)
-{
-  MPI_Datatype row;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &row));
-  PetscCallMPI(MPI_Type_commit(&row));
-  if (direction == EQM_TO_SLAB) {
-    PetscCall(PetscSFReduceBegin(sf, row, leaves, slab, MPI_REPLACE));
-    PetscCall(PetscSFReduceEnd(sf, row, leaves, slab, MPI_REPLACE));
-  } else {
-    PetscCall(PetscSFBcastBegin(sf, row, slab, leaves, MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(sf, row, slab, leaves, MPI_REPLACE));
-  }
-  PetscCallMPI(MPI_Type_free(&row));
-  PetscFunctionReturn(0);
-}
+#include "base/rows.h"
 
 PetscErrorCode EqmMeshVerticesToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *owned,
                                       PetscReal *slab)
@@ -27,7 +9,7 @@ PetscErrorCode EqmMeshVerticesToInput(EqmMesh mesh, EqmSoup soup, PetscInt width
 
   PetscFunctionBegin;
   PetscCall(EqmSoupSlabSF(soup, mesh->num_owned, mesh->vertex_input, &sf));
-  PetscCall(EqmMoveReals(sf, width, EQM_TO_SLAB, slab, (PetscReal *)owned));
+  PetscCall(EqmRowsToRoots(sf, width, owned, slab));
   PetscCall(PetscSFDestroy(&sf));
   PetscFunctionReturn(0);
 }
@@ -39,7 +21,7 @@ PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt wid
 
   PetscFunctionBegin;
   PetscCall(EqmSoupSlabSF(soup, mesh->num_owned, mesh->vertex_input, &sf));
-  PetscCall(EqmMoveReals(sf, width, EQM_FROM_SLAB, (PetscReal *)slab, local));
+  PetscCall(EqmRowsToLeaves(sf, width, slab, local));
   PetscCall(PetscSFDestroy(&sf));
   PetscCall(EqmMeshUpdateGhosts(mesh, width, local));
   PetscFunctionReturn(0);
@@ -47,16 +29,9 @@ PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt wid
 
 PetscErrorCode EqmMeshCellsToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *owned, PetscReal *slab)
 {
-  PetscLayout layout;
-  PetscSF sf;
-
   PetscFunctionBegin;
-  PetscCall(PetscLayoutCreateFromSizes(soup->comm, soup->cell_end - soup->cell_start, soup->num_cells, 1, &layout));
-  PetscCall(PetscSFCreate(soup->comm, &sf));
-  PetscCall(PetscSFSetGraphLayout(sf, layout, mesh->num_owned_cells, NULL, PETSC_OWN_POINTER, mesh->cell_input));
-  PetscCall(EqmMoveReals(sf, width, EQM_TO_SLAB, slab, (PetscReal *)owned));
-  PetscCall(PetscSFDestroy(&sf));
-  PetscCall(PetscLayoutDestroy(&layout));
+  PetscCall(EqmLeaveRows(soup->comm, soup->cell_end - soup->cell_start, mesh->num_owned_cells, mesh->cell_input,
+                         MPIU_REAL, width, owned, slab));
   PetscFunctionReturn(0);
 }
 

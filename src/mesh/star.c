@@ -1,20 +1,14 @@
 /* Bring to every rank the cells around the vertices it owns. */
 #include "mesh/build.h"
 #include "base/exchange.h"
+#include "base/rows.h"
 
 /* A star forest whose roots are the soup's slabs of vertices and whose leaves are the given input vertex numbers.
    Collective. */
 PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *vertices, PetscSF *sf)
 {
-  PetscLayout layout;
-
   PetscFunctionBegin;
-  PetscCall(
-      PetscLayoutCreateFromSizes(soup->comm, soup->vertex_end - soup->vertex_start, soup->num_vertices, 1, &layout));
-  PetscCall(PetscSFCreate(soup->comm, sf));
-  PetscCall(PetscSFSetGraphLayout(*sf, layout, num_leaves, NULL, PETSC_OWN_POINTER, vertices));
-  PetscCall(PetscSFSetUp(*sf));
-  PetscCall(PetscLayoutDestroy(&layout));
+  PetscCall(EqmRowsCreateSF(soup->comm, soup->vertex_end - soup->vertex_start, num_leaves, vertices, sf));
   PetscFunctionReturn(0);
 }
 

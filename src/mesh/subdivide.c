@@ -1,6 +1,7 @@
 /* New vertices on edges, and a new soup from an old one, added vertices and children of cells. */
 #include "mesh/subdivide.h"
 #include "base/exchange.h"
+#include "base/rows.h"
 
 /* Fill in where a group's local vertices stand in the whole. Collective. */
 PetscErrorCode EqmVertexGroupPlace(MPI_Comm comm, EqmVertexGroup *group)
@@ -166,15 +167,39 @@ PetscErrorCode EqmCellListAdd(EqmCellList *list, PetscInt parent, const PetscInt
   PetscFunctionReturn(0);
 }
 
+/* Where the vertices low .. high - 1 of a group are: who holds them, and at which of its places, `offset` vertices of
+   other groups coming before. */
+static PetscErrorCode FindHolders(MPI_Comm comm, const EqmVertexGroup *group, PetscInt offset, PetscInt low,
+                                  PetscInt high, PetscSFNode *node)
+{
+  PetscLayout layout;
+  PetscInt *offsets;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLayoutCreateFromSizes(comm, group->num_local, group->num_global, 1, &layout));
+  PetscCall(PetscMalloc1(layout->size, &offsets));
+  PetscCallMPI(MPI_Allgather(&offset, 1, MPIU_INT, offsets, 1, MPIU_INT, comm));
+  for (PetscInt v = low; v < high; v++) {
+    PetscSFNode *const place = &node[v - low];
+    PetscMPIInt owner;
+
+    PetscCall(PetscLayoutFindOwnerIndex(layout, v, &owner, &place->index));
+    place->rank = owner;
+    place->index += offsets[owner];
+  }
+  PetscCall(PetscFree(offsets));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscFunctionReturn(0);
+}
+
 /* Positions of the groups' vertices, one group after the other, dealt out in even slabs. */
 static PetscErrorCode DealVertices(MPI_Comm comm, PetscInt num_groups, const EqmVertexGroup *groups,
                                    PetscInt *num_local, PetscReal **position)
 {
-  PetscInt num_global = 0, num_roots = 0, end, first = 0, offset = 0;
+  PetscInt num_global = 0, num_roots = 0, start, end, first = 0, offset = 0;
   PetscReal *held;
   PetscSFNode *node;
   PetscSF sf;
-  MPI_Datatype point;
 
   PetscFunctionBegin;
   for (PetscInt g = 0; g < num_groups; g++) {
@@ -184,26 +209,12 @@ static PetscErrorCode DealVertices(MPI_Comm comm, PetscInt num_groups, const Eqm
   *num_local = PETSC_DECIDE;
   PetscCall(PetscSplitOwnership(comm, num_local, &num_global));
   PetscCallMPI(MPI_Scan(num_local, &end, 1, MPIU_INT, MPI_SUM, comm));
+  start = end - *num_local;
   PetscCall(PetscMalloc1(3 * num_roots, &held));
   PetscCall(PetscMalloc1(*num_local, &node));
   for (PetscInt g = 0; g < num_groups; g++) {
-    const PetscInt low = PetscMax(first, end - *num_local), high = PetscMin(first + groups[g].num_global, end);
-    PetscLayout layout;
-    PetscInt *offsets;
-
-    PetscCall(PetscLayoutCreateFromSizes(comm, groups[g].num_local, groups[g].num_global, 1, &layout));
-    PetscCall(PetscMalloc1(layout->size, &offsets));
-    PetscCallMPI(MPI_Allgather(&offset, 1, MPIU_INT, offsets, 1, MPIU_INT, comm));
-    for (PetscInt v = low; v < high; v++) {
-      PetscSFNode *const place = &node[v - (end - *num_local)];
-      PetscMPIInt owner;
-
-      PetscCall(PetscLayoutFindOwnerIndex(layout, v - first, &owner, &place->index));
-      place->rank = owner;
-      place->index += offsets[owner];
-    }
-    PetscCall(PetscFree(offsets));
-    PetscCall(PetscLayoutDestroy(&layout));
+    const PetscInt low = PetscMax(first, start), high = PetscMin(first + groups[g].num_global, end);
+    PetscCall(FindHolders(comm, &groups[g], offset, low - first, high - first, node + (low - start)));
     PetscCall(PetscArraycpy(held + 3 * offset, groups[g].position, 3 * groups[g].num_local));
     first += groups[g].num_global;
     offset += groups[g].num_local;
@@ -211,11 +222,7 @@ static PetscErrorCode DealVertices(MPI_Comm comm, PetscInt num_groups, const Eqm
   PetscCall(PetscSFCreate(comm, &sf));
   PetscCall(PetscSFSetGraph(sf, num_roots, *num_local, NULL, PETSC_OWN_POINTER, node, PETSC_OWN_POINTER));
   PetscCall(PetscMalloc1(3 * *num_local, position));
-  PetscCallMPI(MPI_Type_contiguous(3, MPIU_REAL, &point));
-  PetscCallMPI(MPI_Type_commit(&point));
-  PetscCall(PetscSFBcastBegin(sf, point, held, *position, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, point, held, *position, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&point));
+  PetscCall(EqmRowsToLeaves(sf, 3, held, *position));
   PetscCall(PetscSFDestroy(&sf));
   PetscCall(PetscFree(held));
   PetscFunctionReturn(0);

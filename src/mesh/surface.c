@@ -1,6 +1,7 @@
 /* The closed surface around a solid, as a mesh of its own whose vertices know their places in the solid. */
 #include "mesh/build.h"
 #include "base/exchange.h"
+#include "base/rows.h"
 
 /* Who is who on the surface. */
 typedef struct {
@@ -104,7 +105,7 @@ PetscErrorCode EqmSurfaceCreate(EqmMesh solid, EqmSurface *surface)
 PetscErrorCode EqmSurfaceToSolid(EqmSurface surface, PetscInt width, const PetscReal *slab, PetscReal *local)
 {
   PetscFunctionBegin;
-  PetscCall(EqmMoveReals(surface->vertices, width, EQM_FROM_SLAB, (PetscReal *)slab, local));
+  PetscCall(EqmRowsToLeaves(surface->vertices, width, slab, local));
   PetscFunctionReturn(0);
 }
 
@@ -113,7 +114,7 @@ PetscErrorCode EqmSurfaceToSolid(EqmSurface surface, PetscInt width, const Petsc
 PetscErrorCode EqmSurfaceFromSolid(EqmSurface surface, PetscInt width, const PetscReal *local, PetscReal *slab)
 {
   PetscFunctionBegin;
-  PetscCall(EqmMoveReals(surface->vertices, width, EQM_TO_SLAB, slab, (PetscReal *)local));
+  PetscCall(EqmRowsToRoots(surface->vertices, width, local, slab));
   PetscFunctionReturn(0);
 }
 

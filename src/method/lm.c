@@ -123,40 +123,23 @@ static PetscErrorCode TrialDestroy(EqmTrial *trial)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SetUp(EqmSolver solver)
+/* What is as long as the cells, the vertices or the degrees of freedom are many. */
+static PetscErrorCode MakeRoom(EqmSolver solver)
 {
+  EqmLm *const lm = solver->data;
   const EqmMesh mesh = solver->mesh;
-  const EqmDomain domain = solver->domain;
-  const PetscInt dim = domain->dim;
-  EqmLm *lm;
+  const PetscInt dim = solver->domain->dim, num_cells = mesh->num_local_cells;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&lm));
-  solver->data = lm;
-  lm->mu = 1.;
-  lm->epsilon = PetscMax(solver->settings.balance, 0.);
-  lm->angle_weight = lm->epsilon / domain->target_measure;
-  PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_COUPLED, &lm->linear));
-  PetscCall(EqmLinearSetInexact(lm->linear, inexact));
   PetscCall(TrialCreate(solver, &lm->now));
   PetscCall(TrialCreate(solver, &lm->best));
   PetscCall(TrialCreate(solver, &lm->attempt));
-  PetscCall(PetscMalloc3(mesh->num_local_cells, &lm->rate, mesh->num_local_cells, &lm->bend, mesh->num_local_cells,
-                         &lm->slope));
+  PetscCall(PetscMalloc3(num_cells, &lm->rate, num_cells, &lm->bend, num_cells, &lm->slope));
   PetscCall(PetscMalloc3(dim * mesh->num_local, &lm->velocity, dim * mesh->num_local, &lm->acceleration,
                          dim * mesh->num_owned, &lm->ambient));
-  if (domain->curved_image) {
-    lm->kappa = 1.;
-    PetscCall(PetscMalloc2(mesh->num_local_cells, &lm->lean_rate, mesh->num_local_cells, &lm->lean_bend));
-  }
-  if (lm->epsilon > 0.) {
-    PetscCall(PetscMalloc1(3 * mesh->num_local_cells, &lm->laplacian));
-    PetscCall(EqmLaplacianWeights(domain, EQM_LAPLACIAN_COTANGENT, NULL, lm->laplacian));
-    lm->level = PetscLogReal(solver->totals.total);
-  }
-  PetscCall(EqmDomainCreateVec(domain, &lm->descent));
+  if (solver->domain->curved_image) PetscCall(PetscMalloc2(num_cells, &lm->lean_rate, num_cells, &lm->lean_bend));
+  PetscCall(EqmDomainCreateVec(solver->domain, &lm->descent));
   PetscCall(VecDuplicate(lm->descent, &lm->mean));
-  PetscCall(VecSet(lm->mean, 0.));
   PetscCall(VecDuplicate(lm->descent, &lm->step));
   PetscCall(VecDuplicate(lm->descent, &lm->curve));
   PetscCall(VecDuplicate(lm->descent, &lm->move));
@@ -164,17 +147,51 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(VecDuplicate(lm->descent, &lm->old_descent));
   PetscCall(VecDuplicate(lm->descent, &lm->direction));
   PetscCall(EqmPairsCreate(lm->descent, MEMORY, &lm->pairs));
-  PetscCall(EqmPlaceCopy(domain, &solver->place, &lm->now.place));
+  PetscFunctionReturn(0);
+}
+
+/* The residual is a logarithm: it needs a map without folds. */
+static PetscErrorCode TakeStart(EqmSolver solver)
+{
+  EqmLm *const lm = solver->data;
+  const char *const start = solver->settings.start;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &lm->now.place));
   PetscCall(EqmLmEvaluate(solver, &lm->now));
   if (!(lm->now.objective < INFINITY)) {
     EqmFail(solver->comm, EQM_ERR_USAGE,
-            "-method lm needs a start without folds, and -start %s has %" PetscInt64_FMT "; %s", solver->settings.start,
+            "-method lm needs a start without folds, and -start %s has %" PetscInt64_FMT "; %s", start,
             solver->totals.folds,
-            strcmp(solver->settings.start, "guarded") ? "take -start guarded"
-                                                      : "another -start or -method may still do, or a better mesh");
+            strcmp(start, "guarded") ? "take -start guarded"
+                                     : "another -start or -method may still do, or a better mesh");
   }
   solver->objective = lm->now.objective;
   solver->gradient_norm = -1.;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetUp(EqmSolver solver)
+{
+  EqmLm *lm;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&lm));
+  solver->data = lm;
+  lm->mu = 1.;
+  lm->epsilon = PetscMax(solver->settings.balance, 0.);
+  lm->angle_weight = lm->epsilon / solver->domain->target_measure;
+  lm->kappa = solver->domain->curved_image ? 1. : 0.;
+  PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_COUPLED, &lm->linear));
+  PetscCall(EqmLinearSetInexact(lm->linear, inexact));
+  PetscCall(MakeRoom(solver));
+  PetscCall(VecSet(lm->mean, 0.)); /* where the residual has no mean it stays so */
+  if (lm->epsilon > 0.) {
+    PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &lm->laplacian));
+    PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_COTANGENT, NULL, lm->laplacian));
+    lm->level = PetscLogReal(solver->totals.total);
+  }
+  PetscCall(TakeStart(solver));
   PetscFunctionReturn(0);
 }
 

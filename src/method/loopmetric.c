@@ -9,6 +9,7 @@
    solves them for the whole loop, as it is rank 0 that orders it: the square root of the mesh's size, in work and in
    memory. */
 #include "method/loopmetric.h"
+#include "base/rows.h"
 
 struct _p_EqmLoopMetric {
   PetscSF gather;              /* roots: on rank 0 the vertices in the loop's order; leaves: owned boundary vertices */
@@ -48,7 +49,6 @@ PetscErrorCode EqmLoopMetricCreate(EqmMesh mesh, PetscInt num, const PetscInt *v
   PetscInt *place;
   PetscReal *arc_length, *mine, *point;
   PetscSFNode *root;
-  MPI_Datatype pair;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&metric));
@@ -65,11 +65,7 @@ PetscErrorCode EqmLoopMetricCreate(EqmMesh mesh, PetscInt num, const PetscInt *v
   }
   PetscCall(PetscSFCreate(mesh->comm, &metric->gather));
   PetscCall(PetscSFSetGraph(metric->gather, metric->count, num, NULL, PETSC_COPY_VALUES, root, PETSC_COPY_VALUES));
-  PetscCallMPI(MPI_Type_contiguous(2, MPIU_REAL, &pair));
-  PetscCallMPI(MPI_Type_commit(&pair));
-  PetscCall(PetscSFReduceBegin(metric->gather, pair, mine, point, MPI_REPLACE));
-  PetscCall(PetscSFReduceEnd(metric->gather, pair, mine, point, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&pair));
+  PetscCall(EqmRowsToRoots(metric->gather, 2, mine, point));
   PetscCall(Discretise(metric, point));
   PetscCall(PetscFree2(place, arc_length));
   PetscCall(PetscFree3(root, mine, point));
@@ -124,15 +120,13 @@ static void SolveLoop(EqmLoopMetric metric, PetscReal weight)
 PetscErrorCode EqmLoopMetricApply(EqmLoopMetric metric, const PetscReal *g, PetscReal *h)
 {
   PetscFunctionBegin;
-  PetscCall(PetscSFReduceBegin(metric->gather, MPIU_REAL, g, metric->rhs, MPI_REPLACE));
-  PetscCall(PetscSFReduceEnd(metric->gather, MPIU_REAL, g, metric->rhs, MPI_REPLACE));
+  PetscCall(EqmRowsToRoots(metric->gather, 1, g, metric->rhs));
   for (PetscInt k = 0; k < metric->count; k++) metric->sum[k] = 0.;
   for (PetscReal u = metric->first; metric->count > 0 && u < metric->last; u += node_step) {
     SolveLoop(metric, PetscExpReal(2. * u) + shift);
     for (PetscInt k = 0; k < metric->count; k++)
       metric->sum[k] += 2. / PETSC_PI * node_step * PetscExpReal(u) * metric->solution[k];
   }
-  PetscCall(PetscSFBcastBegin(metric->gather, MPIU_REAL, metric->sum, h, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(metric->gather, MPIU_REAL, metric->sum, h, MPI_REPLACE));
+  PetscCall(EqmRowsToLeaves(metric->gather, 1, metric->sum, h));
   PetscFunctionReturn(0);
 }

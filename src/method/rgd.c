@@ -1,5 +1,6 @@
 /* Riemannian gradient descent (001 Algorithm 1) with the two line searches of the paper. */
 #include "method/method.h"
+#include "method/brent.h"
 
 typedef enum { SEARCH_INTERPOLATION, SEARCH_BRENT } RgdLineSearch;
 static const char *const line_searches[] = {"interpolation", "brent", "EqmRgdLineSearch", "EQM_RGD_", NULL};
@@ -41,8 +42,9 @@ static PetscErrorCode Destroy(EqmSolver solver)
 }
 
 /* phi(alpha) of 001 Appendix C, less phi(0). */
-static PetscErrorCode Phi(EqmSolver solver, PetscReal alpha, PetscReal *value)
+static PetscErrorCode Phi(void *context, PetscReal alpha, PetscReal *value)
 {
+  const EqmSolver solver = context;
   Rgd *const rgd = solver->data;
   PetscReal energy;
 
@@ -83,57 +85,14 @@ static PetscErrorCode Interpolate(EqmSolver solver, PetscReal slope, PetscReal *
   PetscFunctionReturn(0);
 }
 
-/* Brent's bounded minimisation (Algorithms for Minimization without Derivatives, 1973, chapter 5) on (0, 1), which the
-   paper takes from its environment. 0: no decrease. */
-static PetscErrorCode Brent(EqmSolver solver, PetscReal *alpha)
+/* On (0, 1) by Brent's method, which the paper takes from its environment. 0: no decrease. */
+static PetscErrorCode Minimise(EqmSolver solver, PetscReal *alpha)
 {
-  const PetscReal golden = .5 * (3. - PetscSqrtReal(5.)), tolerance = 1e-4;
-  enum { MOST_TRIALS = 100 };
-  PetscReal a = 0., b = 1., x = golden, w = x, v = x, fx, fw, fv, d = 0., e = 0.;
+  PetscReal value;
 
   PetscFunctionBegin;
-  PetscCall(Phi(solver, x, &fx));
-  fw = fv = fx;
-  for (PetscInt trial = 0; trial < MOST_TRIALS; trial++) {
-    const PetscReal middle = .5 * (a + b), close = PETSC_SQRT_MACHINE_EPSILON * PetscAbsReal(x) + tolerance / 3.;
-    PetscReal u, fu, p = 0., q = 0., r = e;
-    if (PetscAbsReal(x - middle) <= 2. * close - .5 * (b - a)) break;
-    if (PetscAbsReal(e) > close) { /* a parabola through x, w, v */
-      const PetscReal s = (x - w) * (fx - fv), t = (x - v) * (fx - fw);
-      p = (x - v) * t - (x - w) * s;
-      q = 2. * (t - s);
-      p = q > 0. ? -p : p;
-      q = PetscAbsReal(q);
-      e = d;
-    }
-    if (PetscAbsReal(p) < PetscAbsReal(.5 * q * r) && p > q * (a - x) && p < q * (b - x)) {
-      d = p / q;
-      u = x + d;
-      if (u - a < 2. * close || b - u < 2. * close) d = x < middle ? close : -close;
-    } else {
-      e = x < middle ? b - x : a - x;
-      d = golden * e;
-    }
-    u = PetscAbsReal(d) >= close ? x + d : d > 0. ? x + close : x - close;
-    PetscCall(Phi(solver, u, &fu));
-    if (fu <= fx) {
-      if (u < x)
-        b = x;
-      else
-        a = x;
-      v = w, fv = fw, w = x, fw = fx, x = u, fx = fu;
-    } else {
-      if (u < x)
-        a = u;
-      else
-        b = u;
-      if (fu <= fw || w == x)
-        v = w, fv = fw, w = u, fw = fu;
-      else if (fu <= fv || v == x || v == w)
-        v = u, fv = fu;
-    }
-  }
-  *alpha = fx < 0. ? x : 0.;
+  PetscCall(EqmBrentSearch(Phi, solver, alpha, &value));
+  if (!(value < 0.)) *alpha = 0.;
   PetscFunctionReturn(0);
 }
 
@@ -146,7 +105,7 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   PetscCall(VecCopy(rgd->gradient, rgd->direction));
   PetscCall(VecScale(rgd->direction, -1.));
   if ((int)solver->settings.rgd_line_search == SEARCH_BRENT)
-    PetscCall(Brent(solver, &alpha));
+    PetscCall(Minimise(solver, &alpha));
   else
     PetscCall(Interpolate(solver, -PetscSqr(solver->gradient_norm), &alpha));
   *outcome = EQM_STEP_STALLED;

@@ -1,12 +1,11 @@
 /* The image mesh: the input's cells with every vertex at its image, in any mesh format. */
 #include "store.h"
 #include "format/format.h"
-#include <petscsf.h>
+#include "base/rows.h"
 
 /* Bring slabs of reals together on rank 0, where `all` has room for them. */
 static PetscErrorCode GatherReals(MPI_Comm comm, PetscInt width, PetscInt count, const PetscReal *slab, PetscReal *all)
 {
-  MPI_Datatype unit;
   PetscLayout layout;
   PetscSF sf;
 
@@ -14,11 +13,7 @@ static PetscErrorCode GatherReals(MPI_Comm comm, PetscInt width, PetscInt count,
   PetscCall(PetscLayoutCreateFromSizes(comm, count, PETSC_DETERMINE, 1, &layout));
   PetscCall(PetscSFCreate(comm, &sf));
   PetscCall(PetscSFSetGraphWithPattern(sf, layout, PETSCSF_PATTERN_GATHER));
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &unit));
-  PetscCallMPI(MPI_Type_commit(&unit));
-  PetscCall(PetscSFBcastBegin(sf, unit, slab, all, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, unit, slab, all, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&unit));
+  PetscCall(EqmRowsToLeaves(sf, width, slab, all));
   PetscCall(PetscSFDestroy(&sf));
   PetscCall(PetscLayoutDestroy(&layout));
   PetscFunctionReturn(0);

@@ -110,21 +110,6 @@ static PetscErrorCode ReadResult(EqmSoup soup, const char *file, EqmMap *map)
   PetscFunctionReturn(0);
 }
 
-/* Move three reals per vertex from the slabs of one soup to the slabs of another with the same vertices. */
-static PetscErrorCode Redeal(EqmSoup from, EqmSoup to, PetscReal *values)
-{
-  const PetscInt count = to->vertex_end - to->vertex_start;
-  PetscInt *wanted;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(count, &wanted));
-  for (PetscInt i = 0; i < count; i++) wanted[i] = to->vertex_start + i;
-  PetscCall(EqmFetchRows(from->comm, from->vertex_end - from->vertex_start, count, wanted, MPIU_REAL, 3, from->vertices,
-                         values));
-  PetscCall(PetscFree(wanted));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode FillFromImage(EqmSoup soup, EqmSoup image, EqmMap *map)
 {
   const PetscInt count = soup->vertex_end - soup->vertex_start;
@@ -134,7 +119,8 @@ static PetscErrorCode FillFromImage(EqmSoup soup, EqmSoup image, EqmMap *map)
   PetscFunctionBegin;
   PetscCall(CheckCount(soup, image->num_vertices, image->file));
   PetscCall(PetscMalloc1(3 * count, &points));
-  PetscCall(Redeal(image, soup, points));
+  PetscCall(EqmFetchSlab(image->comm, image->vertex_end - image->vertex_start, count, soup->vertex_start, MPIU_REAL, 3,
+                         image->vertices, points));
   for (PetscInt i = 0; i < count; i++) lifted = (PetscBool)(lifted || points[3 * i + 2] != 0.0);
   PetscCall(MPIU_Allreduce(&lifted, &any, 1, MPIU_BOOL, MPI_LOR, soup->comm));
   PetscCall(EqmMapCreate(soup, any ? 3 : 2, map));

@@ -1,21 +1,16 @@
 /* The map of a mended mesh, brought back onto the mesh that the user gave. */
 #include <equimap/map.h>
 #include "base/rows.h"
-#include <petscsf.h>
 
 /* Copy `width` reals per vertex from the slabs of the mended soup to those of the input, whose vertices kept their
    numbers. Collective. */
 static PetscErrorCode FetchVertices(EqmSoup mended, EqmSoup input, PetscInt width, const PetscReal *from, PetscReal *to)
 {
   const PetscInt count = input->vertex_end - input->vertex_start;
-  PetscInt *wanted;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(count, &wanted));
-  for (PetscInt i = 0; i < count; i++) wanted[i] = input->vertex_start + i;
-  PetscCall(
-      EqmFetchRows(mended->comm, mended->vertex_end - mended->vertex_start, count, wanted, MPIU_REAL, width, from, to));
-  PetscCall(PetscFree(wanted));
+  PetscCall(EqmFetchSlab(mended->comm, mended->vertex_end - mended->vertex_start, count, input->vertex_start, MPIU_REAL,
+                         width, from, to));
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,6 @@
 /* The visitor's verbs for arrays, on every rank its slab. */
 #include "store/state_private.h"
+#include "base/rows.h"
 
 /* This rank's share of rows; or, for what is the same everywhere, rank 0's writing all of them. */
 EqmSlab EqmStateSlab(EqmState state, PetscInt total, PetscInt width, PetscBool on_root)
@@ -103,26 +104,20 @@ PetscErrorCode EqmStateVertices(EqmState state, const char *name, PetscInt width
   const EqmMesh mesh = state->mesh;
   const EqmSlab slab = EqmStateSlab(state, mesh->soup_vertices, width, PETSC_FALSE);
   char full[EQM_STATE_NAME];
-  MPI_Datatype row;
   PetscInt place;
 
   PetscFunctionBegin;
   PetscCall(PlaceArray(state, name, slab, full, &place));
   if (state->mode == EQM_STATE_ANNOUNCE) PetscFunctionReturn(0);
   PetscCall(MakeWay(state, slab));
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &row));
-  PetscCallMPI(MPI_Type_commit(&row));
   if (state->mode == EQM_STATE_WRITE) {
     PetscCall(PetscArrayzero(state->buffer, slab.width * slab.count)); /* vertices of no cell */
-    PetscCall(PetscSFReduceBegin(state->to_slab, row, local, state->buffer, MPI_REPLACE));
-    PetscCall(PetscSFReduceEnd(state->to_slab, row, local, state->buffer, MPI_REPLACE));
+    PetscCall(EqmRowsToRoots(state->to_slab, width, local, state->buffer));
     PetscCall(WriteArray(state, full, place, slab, state->buffer));
   } else {
     PetscCall(EqmH5ReadReals(state->h5, full, slab, state->buffer));
-    PetscCall(PetscSFBcastBegin(state->to_slab, row, state->buffer, local, MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(state->to_slab, row, state->buffer, local, MPI_REPLACE));
+    PetscCall(EqmRowsToLeaves(state->to_slab, width, state->buffer, local));
     PetscCall(EqmMeshUpdateGhosts(mesh, width, local));
   }
-  PetscCallMPI(MPI_Type_free(&row));
   PetscFunctionReturn(0);
 }

@@ -191,7 +191,7 @@ PetscErrorCode EqmSphereUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 
     PetscCall(UnfoldCreate(solver->mesh, &unfold));
     PetscCall(EqmPlaceCreate(solver->domain, &best));
     PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &best));
-    for (PetscInt round = 0; round<MOST_ROUNDS && * after> 0; round++) {
+    for (PetscInt round = 0; round < MOST_ROUNDS && (*after) > 0; round++) {
       PetscCall(FirstFold(solver, det, center));
       PetscCall(StraightenCap(solver, &unfold, center, round % 2 ? .6 : 1.2));
       PetscCall(EqmImageFolds(solver->domain, &solver->place, det, &folds));

@@ -196,8 +196,8 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   CHECK(work->factorizations - before.factorizations == 4 && work->solves - before.solves == 10,
         "%d factorisations, %d solves", (int)(work->factorizations - before.factorizations),
         (int)(work->solves - before.solves));
-  CHECK(work->coupled_factorizations - before.coupled_factorizations == (use == EQM_MATRIX_SCALAR ? 0 : 4), "%d coupled",
-        (int)(work->coupled_factorizations - before.coupled_factorizations));
+  CHECK(work->coupled_factorizations - before.coupled_factorizations == (use == EQM_MATRIX_SCALAR ? 0 : 4),
+        "%d coupled", (int)(work->coupled_factorizations - before.coupled_factorizations));
   PetscCall(CheckApply(linear, &model));
   if (direct)
     PetscCall(CheckIndefinite(linear, &model));
@@ -227,14 +227,15 @@ static PetscErrorCode TestMemory(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   PetscOptions options;
   EqmLinear linear;
   EqmEstimate estimate;
-  PetscBool fits;
   PetscReal limit;
 
   PetscFunctionBegin;
   PetscCall(EqmMemoryLimit(mesh->comm, &limit));
   CHECK(limit > 1e6 && limit < INFINITY, "%g bytes are free", (double)limit);
-  PetscCall(EqmLinearEstimate(mesh, ordering, unknowns, &estimate, &fits));
-  CHECK(fits, "a mesh of nothing does not fit");
+  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_COUPLED, &linear));
+  CHECK(linear->kind != EQM_SOLVER_MULTIGRID, "the factor of a small mesh does not fit");
+  estimate = linear->estimate;
+  PetscCall(EqmLinearDestroy(&linear));
   CHECK(estimate.nonzeros > mesh->num_vertices && estimate.flops > estimate.nonzeros, "%g nonzeros, %g operations",
         (double)estimate.nonzeros, (double)estimate.flops);
   CHECK(estimate.bytes >= 8. * estimate.nonzeros && estimate.bytes < 1e9, "%g bytes for %g nonzeros",
@@ -242,8 +243,6 @@ static PetscErrorCode TestMemory(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   CHECK(estimate.most_bytes_on_rank >= estimate.bytes_on_rank && estimate.most_bytes_on_rank <= estimate.bytes,
         "%g bytes on a rank, %g in all", (double)estimate.most_bytes_on_rank, (double)estimate.bytes);
   PetscCall(TestOptionsBegin("-memory_limit 1e-6", &options));
-  PetscCall(EqmLinearEstimate(mesh, ordering, unknowns, &estimate, &fits));
-  CHECK(!fits, "%g bytes fit in a thousand", (double)estimate.most_bytes_on_rank);
   PetscCall(EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_SCALAR, &linear));
   CHECK(linear->kind == EQM_SOLVER_MULTIGRID, "%s in a thousand bytes", EqmSolverKinds[linear->kind]);
   PetscCall(EqmLinearDestroy(&linear));

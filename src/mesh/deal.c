@@ -1,0 +1,162 @@
+/* A mesh that one rank holds, dealt to all in slabs, and gathered again. */
+#include "mesh/build.h"
+#include <string.h>
+
+enum { TAG_VERTICES = 1, TAG_CELLS = 2 };
+
+/* First row of a rank's share of `total` rows: contiguous, in rank order, sizes that differ by one at most. */
+static PetscInt ShareStart(PetscInt total, PetscMPIInt rank, PetscMPIInt size)
+{
+  return (PetscInt)((PetscInt64)total / size * rank + PetscMin(rank, (PetscInt64)total % size));
+}
+
+/* The balanced slabs: start[r] is the first row of rank r, start[size] the total. */
+static PetscErrorCode BalancedStarts(MPI_Comm comm, PetscInt total, PetscInt **start)
+{
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc1(size + 1, start));
+  for (PetscMPIInt r = 0; r <= size; ++r) (*start)[r] = ShareStart(total, r, size);
+  PetscFunctionReturn(0);
+}
+
+/* Send or receive the rows of the others' slabs (on rank 0, in `all`), or those of this rank (`slab`). */
+static PetscErrorCode MoveRows(MPI_Comm comm, PetscBool deal, MPI_Datatype row, size_t row_bytes, PetscMPIInt tag,
+                               const PetscInt *start, char *all, char *slab)
+{
+  PetscMPIInt rank, size, count, num_requests = 0;
+  MPI_Request *requests;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc1(size, &requests));
+  for (PetscMPIInt r = 1; r < size; ++r) {
+    char *rows = rank == 0 ? all + (size_t)start[r] * row_bytes : slab;
+    const PetscMPIInt partner = rank == 0 ? r : 0;
+
+    if (rank != 0 && rank != r) continue;
+    PetscCall(PetscMPIIntCast(start[r + 1] - start[r], &count));
+    if ((rank == 0) == (deal == PETSC_TRUE)) {
+      PetscCallMPI(MPI_Isend(rows, count, row, partner, tag, comm, &requests[num_requests++]));
+    } else {
+      PetscCallMPI(MPI_Irecv(rows, count, row, partner, tag, comm, &requests[num_requests++]));
+    }
+  }
+  PetscCallMPI(MPI_Waitall(num_requests, requests, MPI_STATUSES_IGNORE));
+  PetscCall(PetscFree(requests));
+  PetscFunctionReturn(0);
+}
+
+/* Move rows between rank 0, which has room for `all` of them, and the slabs of the others; `deal` is the direction from
+   rank 0. A row of `width` numbers is one item for MPI, whose counts are 32-bit. The slab of rank 0 is not touched. */
+static PetscErrorCode Transfer(MPI_Comm comm, PetscBool deal, MPI_Datatype number, PetscInt width, PetscMPIInt tag,
+                               const PetscInt *start, void *all, void *slab)
+{
+  MPI_Datatype row;
+  PetscMPIInt row_bytes;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, number, &row));
+  PetscCallMPI(MPI_Type_commit(&row));
+  PetscCallMPI(MPI_Type_size(row, &row_bytes));
+  PetscCall(MoveRows(comm, deal, row, (size_t)row_bytes, tag, start, (char *)all, (char *)slab));
+  PetscCallMPI(MPI_Type_free(&row));
+  PetscFunctionReturn(0);
+}
+
+/* Deal the rows that rank 0 holds; its own slab is the beginning of its array, which shrinks. */
+static PetscErrorCode Deal(MPI_Comm comm, PetscInt total, MPI_Datatype number, PetscInt width, PetscMPIInt tag,
+                           void *all, PetscInt *num_local, void **slab)
+{
+  PetscInt *start;
+  PetscMPIInt rank, number_bytes;
+  size_t bytes;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Type_size(number, &number_bytes));
+  PetscCall(BalancedStarts(comm, total, &start));
+  *num_local = start[rank + 1] - start[rank];
+  bytes = (size_t)number_bytes * (size_t)width * (size_t)*num_local;
+  if (rank == 0)
+    *slab = all;
+  else
+    PetscCall(PetscMalloc(bytes, slab));
+  PetscCall(Transfer(comm, PETSC_TRUE, number, width, tag, start, *slab, *slab));
+  if (rank == 0 && bytes > 0) PetscCall(PetscRealloc(bytes, slab));
+  PetscCall(PetscFree(start));
+  PetscFunctionReturn(0);
+}
+
+/* EqmSoupCreateFromRoot - deal a mesh that rank 0 holds to all ranks, in balanced contiguous slabs.
+
+   Collective. serial - on rank 0 the mesh, whose arrays are taken over and are gone afterwards; not looked at
+   elsewhere. */
+PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const char *file, EqmSoup *soup)
+{
+  EqmSerialMesh mesh = {0};
+  PetscInt shape[3], num_vertices, num_cells;
+  void *vertices, *cells;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    mesh = *serial;
+    memset(serial, 0, sizeof(*serial));
+  }
+  shape[0] = mesh.num_vertices;
+  shape[1] = mesh.num_cells;
+  shape[2] = mesh.cell_size;
+  PetscCallMPI(MPI_Bcast(shape, 3, MPIU_INT, 0, comm));
+  PetscCall(Deal(comm, shape[0], MPIU_REAL, 3, TAG_VERTICES, mesh.vertices, &num_vertices, &vertices));
+  PetscCall(Deal(comm, shape[1], MPIU_INT, shape[2], TAG_CELLS, mesh.cells, &num_cells, &cells));
+  PetscCall(EqmSoupCreateFromSlabs(comm, shape[2], num_vertices, vertices, num_cells, cells, file, soup));
+  PetscFunctionReturn(0);
+}
+
+/* The slabs as they are: start[r] is the first row of rank r. */
+static PetscErrorCode GivenStarts(MPI_Comm comm, PetscInt slab_end, PetscInt **start)
+{
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc1(size + 1, start));
+  (*start)[0] = 0;
+  PetscCallMPI(MPI_Allgather(&slab_end, 1, MPIU_INT, *start + 1, 1, MPIU_INT, comm));
+  PetscFunctionReturn(0);
+}
+
+/* EqmSoupGather - the whole mesh on rank 0, for formats that one rank must write.
+
+   Collective. serial - filled on rank 0, empty elsewhere; EqmSerialMeshReset frees it. */
+PetscErrorCode EqmSoupGather(EqmSoup soup, EqmSerialMesh *serial)
+{
+  const size_t width = (size_t)soup->cell_size;
+  PetscInt *start;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
+  memset(serial, 0, sizeof(*serial));
+  if (rank == 0) {
+    serial->num_vertices = soup->num_vertices;
+    serial->num_cells = soup->num_cells;
+    serial->cell_size = soup->cell_size;
+    PetscCall(PetscMalloc1(3 * (size_t)soup->num_vertices, &serial->vertices));
+    PetscCall(PetscMalloc1(width * (size_t)soup->num_cells, &serial->cells));
+    PetscCall(PetscArraycpy(serial->vertices, soup->vertices, 3 * (size_t)soup->vertex_end));
+    PetscCall(PetscArraycpy(serial->cells, soup->cells, width * (size_t)soup->cell_end));
+  }
+  PetscCall(GivenStarts(soup->comm, soup->vertex_end, &start));
+  PetscCall(Transfer(soup->comm, PETSC_FALSE, MPIU_REAL, 3, TAG_VERTICES, start, serial->vertices, soup->vertices));
+  PetscCall(PetscFree(start));
+  PetscCall(GivenStarts(soup->comm, soup->cell_end, &start));
+  PetscCall(Transfer(soup->comm, PETSC_FALSE, MPIU_INT, soup->cell_size, TAG_CELLS, start, serial->cells, soup->cells));
+  PetscCall(PetscFree(start));
+  PetscFunctionReturn(0);
+}
