@@ -56,8 +56,10 @@ struct _p_EqmMesh {
 };
 
 /* Build the distributed mesh of a soup: partition, renumber, exchange one ghost layer. The soup must have passed the
-   diagnosis (manifold, oriented, referenced). Options: -partition metis|slab. Collective. */
+   diagnosis (manifold, oriented, referenced). Option: -partition metis|slab. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *mesh);
+/* Ask for its options, with help. Collective. */
+PETSC_EXTERN PetscErrorCode EqmMeshAskOptions(PetscOptionItems *PetscOptionsObject);
 PETSC_EXTERN PetscErrorCode EqmMeshDestroy(EqmMesh *mesh);
 /* Fill the ghosts of an array with `width` reals per local vertex from their owners. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMeshUpdateGhosts(EqmMesh mesh, PetscInt width, PetscReal *array);

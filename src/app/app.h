@@ -31,10 +31,14 @@ PETSC_INTERN PetscErrorCode EqmSweepOutput(const char *files);
 PETSC_INTERN PetscErrorCode EqmCloseBooks(EqmLedger ledger, EqmMap map);
 PETSC_INTERN PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ...);
 
-/* -threads, which main takes before any command: asked again to be listed by --help. */
-PETSC_INTERN PetscErrorCode EqmAskThreads(PetscOptionItems *PetscOptionsObject);
-/* Fail with EQM_ERR_USAGE if an option was given that nobody asked for. Call after all options have been read, before
-   the work starts. Collective. */
+/* How the work is laid out: -threads, which main takes before any command (asked again to be listed by --help), and
+   what belongs to the mesh. Collective. */
+PETSC_INTERN PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject);
+/* Remember which options PETSc has that are none of the command line's. Call before others are inserted. Collective. */
+PETSC_INTERN PetscErrorCode EqmNoteForeignOptions(int argc, char **argv);
+PETSC_INTERN PetscErrorCode EqmForgetForeignOptions(void);
+/* Fail with EQM_ERR_USAGE if an option was given that nobody asked for; of a foreign one say so only. Call after all
+   options have been read, before the work starts. Collective. */
 PETSC_INTERN PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line);
 /* Options of matrices, vectors and solvers are known only when these are made: say after the run which of them nobody
    asked for. Collective. */

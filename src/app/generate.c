@@ -32,7 +32,8 @@ static PetscErrorCode PrintShapes(void)
 
   PetscFunctionBegin;
   PetscCall(EqmGenerateShapes(&names, &descriptions, &n));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\nusage: equimap generate SHAPE -n N [-seed S] -o OUT, with SHAPE one of\n"));
+  PetscCall(
+      PetscPrintf(PETSC_COMM_WORLD, "\nusage: equimap generate SHAPE -n N [-seed S] -o OUT, with SHAPE one of\n"));
   for (int i = 0; i < n; i++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-9s %s\n", names[i], descriptions[i]));
   PetscCall(PetscFree(names));
   PetscCall(PetscFree(descriptions));

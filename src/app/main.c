@@ -16,7 +16,8 @@ static const CommandRow commands[] = {
     {"disk", EqmCommandMap, "MESH -o OUT", "area-preserving map of a disk-type surface to the unit disk"},
     {"square", EqmCommandMap, "MESH -o OUT", "the same to the unit square"},
     {"sphere", EqmCommandMap, "MESH -o OUT", "area-preserving map of a closed genus-0 surface to the unit sphere"},
-    {"conformal", EqmCommandMap, "MESH -o OUT", "angle-preserving map: closed surface to the unit sphere, disk-type to the unit disk"},
+    {"conformal", EqmCommandMap, "MESH -o OUT",
+     "angle-preserving map: closed surface to the unit sphere, disk-type to the unit disk"},
     {"ball", EqmCommandMap, "MESH -o OUT", "volume-preserving map of a solid ball of tetrahedra to the unit ball"},
     {"register", EqmCommandRegister, "A B -o OUT", "measure-preserving correspondence between two surfaces or solids"},
     {"check", EqmCommandCheck, "MESH", "diagnose a mesh: what it is, what is wrong, what each command would say"},
@@ -106,6 +107,7 @@ static PetscErrorCode InsertOptions(const EqmCommandLine *line, int argc, char *
   PetscBool log_view;
 
   PetscFunctionBegin;
+  PetscCall(EqmNoteForeignOptions(argc, argv));
   for (int k = 0; k < line->num_options_files; k++) {
     PetscErrorCode error;
 
@@ -221,6 +223,6 @@ int main(int argc, char **argv)
     if (!error) error = Run(&line, &status);
   }
   if (error) status = EqmStatusOfError(error);
-  if (EqmFinalize()) return EQM_STATUS_INTERNAL;
+  if (EqmForgetForeignOptions() || EqmFinalize()) return EQM_STATUS_INTERNAL;
   return (int)status;
 }

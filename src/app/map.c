@@ -46,7 +46,7 @@ static PetscErrorCode AskOptions(MapOptions *options)
                             "compute so many of the smallest eigenvalues of the energy's Hessian at the result (needs "
                             "a build with SLEPc)",
                             NULL, options->hessian_eigenvalues, &options->hessian_eigenvalues, NULL));
-  PetscCall(EqmAskThreads(PetscOptionsObject));
+  PetscCall(EqmAskLayout(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-dry_run", "look at options, mesh and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();
@@ -128,6 +128,31 @@ static PetscErrorCode TakeEigenvalues(const MapOptions *options, EqmLedger ledge
   PetscFunctionReturn(0);
 }
 
+/* What it took. */
+static PetscErrorCode PrintWork(MPI_Comm comm, EqmMap map)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(comm,
+                        "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT
+                        " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves\n",
+                        map->work.evaluations, map->work.factorizations, map->work.coupled_factorizations,
+                        map->work.solves));
+  PetscCall(PetscPrintf(comm,
+                        "  seconds       %.2f: read %.2f, diagnose %.2f, distribute %.2f, start %.2f, minimise %.2f, "
+                        "measure %.2f, write %.2f\n",
+                        (double)map->total_seconds, (double)map->phase_seconds[EQM_PHASE_READ],
+                        (double)map->phase_seconds[EQM_PHASE_DIAGNOSE],
+                        (double)map->phase_seconds[EQM_PHASE_DISTRIBUTE], (double)map->phase_seconds[EQM_PHASE_START],
+                        (double)map->phase_seconds[EQM_PHASE_MINIMISE], (double)map->phase_seconds[EQM_PHASE_MEASURE],
+                        (double)map->phase_seconds[EQM_PHASE_WRITE]));
+  PetscCall(PetscPrintf(comm,
+                        "  of these      METIS %.2f, assembly %.2f, factorisation %.2f, solves %.2f, kernels %.2f\n",
+                        (double)map->event_seconds[EQM_EVENT_PARTITION], (double)map->event_seconds[EQM_EVENT_ASSEMBLE],
+                        (double)map->event_seconds[EQM_EVENT_FACTOR], (double)map->event_seconds[EQM_EVENT_SOLVE],
+                        (double)map->event_seconds[EQM_EVENT_KERNEL]));
+  PetscFunctionReturn(0);
+}
+
 /* A closing table for people. */
 static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
 {
@@ -153,24 +178,7 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
   PetscCall(PetscPrintf(comm, "  folds         %" PetscInt64_FMT, d->folds));
   if (is_solid) PetscCall(PetscPrintf(comm, "   on the boundary %" PetscInt64_FMT, map->boundary_folds));
   PetscCall(PetscPrintf(comm, "\n"));
-  PetscCall(PetscPrintf(comm,
-                        "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT
-                        " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves\n",
-                        map->work.evaluations, map->work.factorizations, map->work.coupled_factorizations,
-                        map->work.solves));
-  PetscCall(PetscPrintf(comm,
-                        "  seconds       %.2f: read %.2f, diagnose %.2f, distribute %.2f, start %.2f, minimise %.2f, "
-                        "measure %.2f, write %.2f\n",
-                        (double)map->total_seconds, (double)map->phase_seconds[EQM_PHASE_READ],
-                        (double)map->phase_seconds[EQM_PHASE_DIAGNOSE],
-                        (double)map->phase_seconds[EQM_PHASE_DISTRIBUTE], (double)map->phase_seconds[EQM_PHASE_START],
-                        (double)map->phase_seconds[EQM_PHASE_MINIMISE], (double)map->phase_seconds[EQM_PHASE_MEASURE],
-                        (double)map->phase_seconds[EQM_PHASE_WRITE]));
-  PetscCall(PetscPrintf(comm,
-                        "  of these      METIS %.2f, assembly %.2f, factorisation %.2f, solves %.2f, kernels %.2f\n",
-                        (double)map->event_seconds[EQM_EVENT_PARTITION], (double)map->event_seconds[EQM_EVENT_ASSEMBLE],
-                        (double)map->event_seconds[EQM_EVENT_FACTOR], (double)map->event_seconds[EQM_EVENT_SOLVE],
-                        (double)map->event_seconds[EQM_EVENT_KERNEL]));
+  PetscCall(PrintWork(comm, map));
   PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)map->memory_total,
                         map->status == EQM_STATUS_STOPPED ? options->checkpoint : options->output));
   PetscFunctionReturn(0);

@@ -1,8 +1,9 @@
-/* Options: one that commands share; those that nobody asked for, which are mistakes, and a mistake is said before the
+/* Options: those that commands share; those that nobody asked for, which are mistakes, and a mistake is said before the
    work starts, not after. */
 #include "app.h"
 #include <omp.h>
 #include <string.h>
+#include <strings.h>
 
 /* What PETSc asks for later than we do, when it ends or in the middle of the work. */
 static const char *const late_names[] = {
@@ -21,6 +22,10 @@ static const char *const late_prefixes[] = {"hessian_eps_", "hessian_st_", "mat_
 enum { MOST_TRUSTED = 32, LONGEST_NAME = 128 };
 static char trusted[MOST_TRUSTED][LONGEST_NAME];
 static PetscInt num_trusted;
+
+/* What PETSc has read before the command line: a petscrc file and PETSC_OPTIONS, which may be meant for others. */
+static char **foreign;
+static PetscInt num_foreign;
 
 static PetscBool IsLate(const char *name)
 {
@@ -42,7 +47,7 @@ static PetscBool IsTrusted(const char *name)
   return PETSC_FALSE;
 }
 
-PetscErrorCode EqmAskThreads(PetscOptionItems *PetscOptionsObject)
+PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject)
 {
   PetscInt threads = omp_get_max_threads();
 
@@ -50,6 +55,42 @@ PetscErrorCode EqmAskThreads(PetscOptionItems *PetscOptionsObject)
   PetscCall(PetscOptionsInt("-threads",
                             "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
                             threads, &threads, NULL));
+  PetscCall(EqmMeshAskOptions(PetscOptionsObject));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool IsForeign(const char *name)
+{
+  for (PetscInt k = 0; k < num_foreign; k++) {
+    if (!strcmp(name, foreign[k])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+PetscErrorCode EqmNoteForeignOptions(int argc, char **argv)
+{
+  PetscInt num_left;
+  char **names, **values;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsLeftGet(NULL, &num_left, &names, &values));
+  PetscCall(PetscMalloc1(num_left, &foreign));
+  for (PetscInt k = 0; k < num_left; k++) {
+    PetscBool ours = PETSC_FALSE;
+    for (int w = 1; w < argc && !ours; w++)
+      ours = (PetscBool)(argv[w][0] == '-' && !strcasecmp(names[k], argv[w] + strspn(argv[w], "-")));
+    if (!ours) PetscCall(PetscStrallocpy(names[k], &foreign[num_foreign++]));
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &num_left, &names, &values));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmForgetForeignOptions(void)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < num_foreign; k++) PetscCall(PetscFree(foreign[k]));
+  PetscCall(PetscFree(foreign));
+  num_foreign = 0;
   PetscFunctionReturn(0);
 }
 
@@ -63,6 +104,12 @@ PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line)
   PetscCall(PetscOptionsLeftGet(NULL, &num_left, &names, &values));
   for (PetscInt k = 0; k < num_left; k++) {
     if (IsLate(names[k]) || IsTrusted(names[k])) continue;
+    if (IsForeign(names[k])) {
+      PetscCall(PetscFPrintf(PETSC_COMM_WORLD, PETSC_STDERR,
+                             "equimap: warning: -%s of PETSC_OPTIONS or a petscrc file means nothing here\n",
+                             names[k]));
+      continue;
+    }
     PetscCall(PetscStrlcat(unknown, count++ ? ", -" : "-", sizeof(unknown)));
     PetscCall(PetscStrlcat(unknown, names[k], sizeof(unknown)));
   }

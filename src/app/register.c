@@ -27,7 +27,7 @@ static PetscErrorCode AskOptions(RegisterOptions *options)
                                sizeof(options->summary), &options->has_summary));
   PetscCall(PetscOptionsString("-history", "write a row per iteration of the last minimisation for A as CSV", NULL, "",
                                options->history, sizeof(options->history), &options->has_history));
-  PetscCall(EqmAskThreads(PetscOptionsObject));
+  PetscCall(EqmAskLayout(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-dry_run", "look at options, meshes and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();

@@ -110,20 +110,36 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
   PetscFunctionReturn(0);
 }
 
-/* The owning rank of every vertex of this rank's slab. Option: -partition metis (fewest cut edges) or slab (as the file
-   has them, for comparison). Collective. */
+enum { PARTITION_METIS, PARTITION_SLAB, NUM_PARTITIONS };
+static const char *const partitions[NUM_PARTITIONS] = {"metis", "slab"};
+
+/* EqmMeshAskOptions - ask for the options of EqmMeshCreate, with help: -partition.
+
+   Collective, between PetscOptionsBegin and PetscOptionsEnd. */
+PetscErrorCode EqmMeshAskOptions(PetscOptionItems *PetscOptionsObject)
+{
+  PetscInt kind = PARTITION_METIS;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsEList("-partition",
+                              "which rank gets which vertices: metis cuts few edges and takes the mesh's graph to one "
+                              "rank for a moment, slab takes the vertices as the file has them",
+                              "EqmMeshCreate", partitions, NUM_PARTITIONS, partitions[kind], &kind, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* The owning rank of every vertex of this rank's slab. Option: -partition. Collective. */
 PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *owner_of_slab)
 {
-  const char *const kinds[] = {"metis", "slab"};
-  PetscInt kind = 0;
+  PetscInt kind = PARTITION_METIS;
   PetscMPIInt rank, size;
   EqmGraph graph;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
   PetscCallMPI(MPI_Comm_size(soup->comm, &size));
-  PetscCall(PetscOptionsGetEList(NULL, NULL, "-partition", kinds, 2, &kind, NULL));
-  if (size == 1 || kind == 1) {
+  PetscCall(PetscOptionsGetEList(NULL, NULL, "-partition", partitions, NUM_PARTITIONS, &kind, NULL));
+  if (size == 1 || kind == PARTITION_SLAB) {
     for (PetscInt i = 0; i < soup->vertex_end - soup->vertex_start; i++) owner_of_slab[i] = rank;
     PetscFunctionReturn(0);
   }

@@ -141,6 +141,18 @@ def check(program, arguments, codes, word):
     return not problems
 
 
+def check_foreign(program):
+    """PETSc's own places may hold options for other programs: they are named, and refused on our command line only."""
+    program.environment["PETSC_OPTIONS"] = "-ksp_rtol 1e-3"
+    foreign = program.run("disk", "good.obj", "-o", "new.h5", "-dry_run")
+    ours = program.run("disk", "good.obj", "-o", "new.h5", "-dry_run", "-ksp_rtol", "1e-3")
+    del program.environment["PETSC_OPTIONS"]
+    passed = foreign.returncode == 0 and foreign.stderr.count("-ksp_rtol of PETSC_OPTIONS") == 1 and ours.returncode == USAGE
+    if not passed:
+        print(f"PETSC_OPTIONS: exit codes {foreign.returncode}, {ours.returncode}\n{foreign.stderr[:1500]}", flush=True)
+    return passed
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
@@ -152,6 +164,7 @@ def main():
             passed.append(check(program, arguments + output, codes, word))
         for output, codes, word in OUTPUTS:
             passed.append(check(program, ["disk", "good.obj"] + (["-o", output] if output else []), codes, word))
+        passed.append(check_foreign(program))
     print(f"{sum(passed)} of {len(passed)} cases as they should be")
     return 0 if all(passed) else 1
 
