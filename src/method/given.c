@@ -23,6 +23,14 @@ PetscErrorCode EqmSolverSetLandmarks(EqmSolver solver, PetscInt num, PetscInt di
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmSolverCheckDraws(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  if (!solver->method->takes_landmarks)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s cannot draw landmarks together; take lm", solver->method->name);
+  PetscFunctionReturn(0);
+}
+
 /* The first map, given or made, or the map of a checkpoint, and the landmarks' owners. Collective. */
 PetscErrorCode EqmSolverTakeGiven(EqmSolver solver)
 {
@@ -40,8 +48,7 @@ PetscErrorCode EqmSolverTakeGiven(EqmSolver solver)
   } else {
     PetscCall(EqmStart(solver));
   }
-  if (solver->landmarks.num_total > 0 && !solver->method->takes_landmarks)
-    EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s cannot draw landmarks together; take lm", solver->method->name);
+  if (solver->landmarks.num_total > 0) PetscCall(EqmSolverCheckDraws(solver));
   PetscCall(EqmLandmarksSetUp(&solver->landmarks, domain));
   PetscFunctionReturn(0);
 }

@@ -139,6 +139,8 @@ PETSC_INTERN PetscErrorCode EqmSolverAccept(EqmSolver solver, const EqmPlace *tr
                                             PetscReal objective, PetscReal step_length);
 /* What was given from outside: first map, landmarks. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverTakeGiven(EqmSolver solver);
+/* Refuse landmarks for a method that has no use for them. Errors: EQM_ERR_USAGE. */
+PETSC_INTERN PetscErrorCode EqmSolverCheckDraws(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverLandmarksReached(EqmSolver solver, PetscBool *reached);
 PETSC_INTERN PetscErrorCode EqmMonitorBegin(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmMonitorReserve(EqmSolver solver, PetscInt rows);

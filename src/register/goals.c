@@ -64,32 +64,58 @@ static PetscBool AreOfTarget(EqmRegistration r)
                      (r->set.points == EQM_POINTS_AUTO && (r->bare || LieInTarget(r))));
 }
 
+/* Boundaries go to boundaries, whatever the weight. */
+static PetscErrorCode CheckBoundaries(EqmRegistration r, const PetscInt *inside_a, const PetscInt *vertices_b,
+                                      const PetscInt *inside_b)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < r->landmarks.num; i++) {
+    const PetscInt a = r->landmarks.vertex[i], b = vertices_b[i];
+    if (inside_a[i] == inside_b[i]) continue;
+    EqmFail(r->comm, EQM_ERR_USAGE,
+            "landmark %" PetscInt_FMT ": vertex %" PetscInt_FMT " of A is %s the boundary, vertex %" PetscInt_FMT
+            " of B is %s it: no map brings them together",
+            i + 1, a, inside_a[i] ? "off" : "on", b, inside_b[i] ? "off" : "on");
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckPoints(EqmRegistration r)
+{
+  const EqmLandmarkList *const list = &r->landmarks;
+
+  PetscFunctionBegin;
+  if (r->set.by == EQM_BY_MIDPOINTS)
+    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too and wants vertices of B for landmarks");
+  if (AreOfTarget(r) && !LieInTarget(r))
+    EqmFail(r->comm, EQM_ERR_USAGE,
+            "the landmarks' points do not lie %s: %" PetscInt_FMT
+            " coordinates each, within 1 %%, are wanted; with -landmark_points surface they are points of B",
+            r->kind == EQM_IMAGE_SPHERE ? "on the unit sphere" : "in the unit disk", r->dim);
+  if (!AreOfTarget(r) && list->width != 3)
+    EqmFail(r->comm, EQM_ERR_USAGE, "points of B have three coordinates; the landmarks have %" PetscInt_FMT,
+            list->width);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmCheckLandmarks(EqmRegistration r)
 {
   const EqmLandmarkList *const list = &r->landmarks;
-  PetscInt *vertices;
+  PetscInt *vertices, *inside_a, *inside_b;
 
   PetscFunctionBegin;
-  PetscCall(EqmSideCheckVertices(&r->a, list->num, list->vertex));
+  PetscCall(PetscMalloc2(list->num, &inside_a, list->num, &inside_b));
+  PetscCall(EqmSideCheckVertices(&r->a, list->num, list->vertex, inside_a));
   if (list->width == 1) {
     if (r->bare) EqmFail(r->comm, EQM_ERR_USAGE, "the target has no vertices: give landmarks as points of it");
     PetscCall(VerticesOfB(r, &vertices));
-    PetscCall(EqmSideCheckVertices(&r->b, list->num, vertices));
+    PetscCall(EqmSideCheckVertices(&r->b, list->num, vertices, inside_b));
+    if (r->kind == EQM_IMAGE_PLANE) PetscCall(CheckBoundaries(r, inside_a, vertices, inside_b));
     PetscCall(PetscFree(vertices));
-    PetscFunctionReturn(0);
+  } else {
+    PetscCall(CheckPoints(r));
   }
-  if (r->set.by == EQM_BY_MIDPOINTS)
-    EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too and wants vertices of B for landmarks");
-  if (AreOfTarget(r)) {
-    if (!LieInTarget(r))
-      EqmFail(r->comm, EQM_ERR_USAGE,
-              "the landmarks' points do not lie %s: %" PetscInt_FMT
-              " coordinates each, within 1 %%, are wanted; with -landmark_points surface they are points of B",
-              r->kind == EQM_IMAGE_SPHERE ? "on the unit sphere" : "in the unit disk", r->dim);
-  } else if (list->width != 3) {
-    EqmFail(r->comm, EQM_ERR_USAGE, "points of B have three coordinates; the landmarks have %" PetscInt_FMT,
-            list->width);
-  }
+  PetscCall(PetscFree2(inside_a, inside_b));
   PetscFunctionReturn(0);
 }
 

@@ -16,17 +16,19 @@ static PetscErrorCode CheckVertex(MPI_Comm comm, const char *file, PetscInt land
           file, landmark + 1, text, name, count - 1);
 }
 
-static PetscErrorCode CheckTwice(MPI_Comm comm, const char *file, const EqmLandmarkList *list)
+/* A vertex has one counterpart. */
+static PetscErrorCode CheckTwice(MPI_Comm comm, const char *file, const EqmTable *table, PetscInt column,
+                                 const char *name)
 {
   PetscInt *sorted;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(list->num, &sorted));
-  PetscCall(PetscArraycpy(sorted, list->vertex, list->num));
-  PetscCall(PetscSortInt(list->num, sorted));
-  for (PetscInt i = 1; i < list->num; i++) {
+  PetscCall(PetscMalloc1(table->rows, &sorted));
+  for (PetscInt i = 0; i < table->rows; i++) sorted[i] = (PetscInt)table->values[table->columns * i + column];
+  PetscCall(PetscSortInt(table->rows, sorted));
+  for (PetscInt i = 1; i < table->rows; i++) {
     if (sorted[i] != sorted[i - 1]) continue;
-    EqmFail(comm, EQM_ERR_USAGE, "%s: vertex %" PetscInt_FMT " of A is a landmark twice", file, sorted[i]);
+    EqmFail(comm, EQM_ERR_USAGE, "%s: vertex %" PetscInt_FMT " of %s is a landmark twice", file, sorted[i], name);
   }
   PetscCall(PetscFree(sorted));
   PetscFunctionReturn(0);
@@ -46,7 +48,12 @@ static PetscErrorCode Take(MPI_Comm comm, const char *file, PetscInt count_a, Pe
     PetscCall(CheckVertex(comm, file, i, row[0], "A", count_a));
     if (list->width == 1 && count_b >= 0) PetscCall(CheckVertex(comm, file, i, row[1], "B", count_b));
     list->vertex[i] = (PetscInt)row[0];
-    for (PetscInt k = 0; k < list->width; k++) list->other[list->width * i + k] = row[1 + k];
+    for (PetscInt k = 0; k < list->width; k++) {
+      if (PetscIsInfOrNanReal(row[1 + k]))
+        EqmFail(comm, EQM_ERR_USAGE, "%s: landmark %" PetscInt_FMT " has a coordinate that is no finite number", file,
+                i + 1);
+      list->other[list->width * i + k] = row[1 + k];
+    }
   }
   PetscFunctionReturn(0);
 }
@@ -66,7 +73,8 @@ PetscErrorCode EqmLandmarkListRead(MPI_Comm comm, const char *file, PetscInt num
   if (rank != 0) PetscCall(PetscMalloc1(table.columns * table.rows, &table.values));
   PetscCallMPI(MPI_Bcast(table.values, (PetscMPIInt)(table.columns * table.rows), MPIU_REAL, 0, comm));
   PetscCall(Take(comm, file, num_vertices_a, num_vertices_b, &table, list));
-  PetscCall(CheckTwice(comm, file, list));
+  PetscCall(CheckTwice(comm, file, &table, 0, "A"));
+  if (list->width == 1) PetscCall(CheckTwice(comm, file, &table, 1, "B"));
   PetscCall(PetscFree(table.values));
   PetscFunctionReturn(0);
 }

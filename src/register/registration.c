@@ -1,5 +1,6 @@
 /* The registration as an object: the way from two files to a correspondence, the figures for people. */
 #include "register/registration.h"
+#include "method/method.h"
 #include "store/keptmesh.h"
 #include <string.h>
 
@@ -56,6 +57,20 @@ static PetscErrorCode AskForTarget(EqmRegistration r, const char *file_b)
   PetscFunctionReturn(0);
 }
 
+/* The solid is only rotated; on a surface the method must draw landmarks together. */
+static PetscErrorCode CheckMethod(EqmRegistration r)
+{
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  if (r->kind == EQM_IMAGE_SPACE) PetscFunctionReturn(0);
+  PetscCall(EqmSolverCreate(r->a.mesh, r->target, &solver));
+  PetscCall(EqmSolverSetFromOptions(solver));
+  PetscCall(EqmSolverCheckDraws(solver));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscFunctionReturn(0);
+}
+
 /* What does not fit together is said before the long run, not after it. */
 static PetscErrorCode CheckTogether(EqmRegistration r)
 {
@@ -65,6 +80,7 @@ static PetscErrorCode CheckTogether(EqmRegistration r)
   if (r->set.align == EQM_ALIGN_POSE && r->dim == 2)
     EqmFail(r->comm, EQM_ERR_USAGE, "-align pose is for the sphere and the ball: a disk has no pose in space");
   if (r->landmarks.num) PetscCall(EqmCheckLandmarks(r));
+  if (r->landmarks.num) PetscCall(CheckMethod(r));
   PetscFunctionReturn(0);
 }
 

@@ -96,8 +96,10 @@ PETSC_INTERN PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const 
                                         const char *map_file, const char *usage);
 PETSC_INTERN PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side);
 PETSC_INTERN PetscErrorCode EqmSideReset(EqmSide *side);
-/* Landmarks must be vertices of some cell. Errors: EQM_ERR_USAGE. Collective. */
-PETSC_INTERN PetscErrorCode EqmSideCheckVertices(const EqmSide *side, PetscInt num, const PetscInt *vertices);
+/* Landmarks must be vertices of some cell. `inside`, of `num`, tells of each whether it is off the boundary. Errors:
+   EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmSideCheckVertices(const EqmSide *side, PetscInt num, const PetscInt *vertices,
+                                                 PetscInt *inside);
 /* `width` values of each of `num` vertices (input numbers), from values per owned vertex; the same on every rank.
    Collective. */
 PETSC_INTERN PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *vertices, PetscInt width,

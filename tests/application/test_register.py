@@ -12,6 +12,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from evaluate import boundary_edges  # noqa: E402
 from meshes import read_obj, renumber, write_obj  # noqa: E402
 from program import Program  # noqa: E402
 
@@ -183,33 +184,71 @@ def check_folded_solid(program, vertices, cells):
 
 
 def check_refused(program):
-    """Mistakes are told in words and leave no result."""
-    generate(program, "hills", 300)
-    generate(program, "head", 300)
-    program.write("twice.csv", "a,b\n3,4\n3,5\n")
-    program.write("far.csv", "a,b\n3,99999\n")
-    program.write("words.csv", "a,b\n3,four\n")
-    program.write("headless.csv", "3,4\n")
-    program.write("pair.csv", "a,b\n3,4\n")
-    for code, words, *arguments in (
+    """Mistakes are told in words, once, before the long run, and leave nothing behind."""
+    vertices, cells = generate(program, "hills", 300)
+    head, _ = generate(program, "head", 300)
+    program.succeed("generate", "ball", "-n", 200, "-o", "ball.h5", ranks=1)
+    program.succeed("convert", "hills.obj", "hills.h5", ranks=1)
+    write_obj(program, "lonely.obj", numpy.vstack([vertices, [[9.0, 9.0, 9.0]]]), read_obj(program.file("hills.obj"))[1])
+    edge = boundary_edges(cells)[0][0]
+    point = head[7] / numpy.linalg.norm(head[7])
+    for name, text in (("twice", "a,b\n3,4\n3,5\n"), ("twice_b", "a,b\n3,5\n4,5\n"), ("far_a", "a,b\n99999,3\n"), ("far_b", "a,b\n3,99999\n"),
+                       ("negative", "a,b\n-1,3\n"), ("between", "a,b\n3.5,3\n"), ("words", "a,b\n3,four\n"), ("headless", "3,4\n"),
+                       ("pair", "a,b\n3,4\n"), ("lonely", f"a,b\n{len(vertices)},3\n"), ("ragged", "a,b\n3,4\n5\n"), ("empty", "a,b\n"),
+                       ("wide", "a,b,c,d,e\n1,2,3,4,5\n"), ("nowhere", "a,x,y,z\n3,nan,0,1\n"),
+                       ("off", "a,x,y,z\n7,%r,%r,%r\n" % tuple((1.1 * point).tolist())), ("flat", "a,x,y\n3,.1,.2\n"),
+                       ("edge", f"a,b\n{edge},{numpy.setdiff1d(cells, boundary_edges(cells))[0]}\n"), ("few", "value\n1\n2\n"), ("text", "value\n" + "1\n" * (len(vertices) - 1) + "one\n")):
+        program.write(name + ".csv", text)
+    both, closed = ("hills.obj", "hills.obj"), ("head.obj", "head.obj")
+    landmarks = lambda name: ("-landmarks", name + ".csv")  # noqa: E731
+    before = sorted(os.listdir(program.folder))
+    cases = (
         (3, "do not correspond", "hills.obj", "head.obj"),
+        (3, "do not correspond", "head.obj", "hills.obj"),
+        (3, "do not correspond", "hills.obj", "ball.h5"),
+        (3, "do not correspond", "ball.h5", "head.obj"),
         (2, "two meshes", "hills.obj"),
-        (2, "is a landmark twice", "hills.obj", "hills.obj", "-landmarks", "twice.csv"),
-        (2, "vertex 99999 of B", "hills.obj", "hills.obj", "-landmarks", "far.csv"),
-        (6, "line 2", "hills.obj", "hills.obj", "-landmarks", "words.csv"),
-        (6, "header", "hills.obj", "hills.obj", "-landmarks", "headless.csv"),
-        (6, "missing.csv", "hills.obj", "hills.obj", "-landmarks", "missing.csv"),
-        (2, "-transfer nothing", "hills.obj", "hills.obj", "-transfer", "nothing"),
-        (2, "cannot draw landmarks", "hills.obj", "hills.obj", "-landmarks", "pair.csv", "-method", "lbfgs", "-max_it", 2),
-        (2, "midpoints", "hills.obj", "hills.obj", "-register_by", "midpoints"),
-        (2, "-frames 1", "hills.obj", "hills.obj", "-frames", 1),
-        (2, "a disk has no pose", "hills.obj", "hills.obj", "-align", "pose"),
-        (2, "unknown option", "hills.obj", "hills.obj", "-landmrks", "x"),
-    ):
-        result = program.run("register", *arguments, "-quiet", "-o", "refused.h5")
+        (2, "is a landmark twice", *both, *landmarks("twice")),
+        (2, "vertex 5 of B is a landmark twice", *both, *landmarks("twice_b")),
+        (2, "vertex 99999 of A", *both, *landmarks("far_a")),
+        (2, "vertex 99999 of B", *both, *landmarks("far_b")),
+        (2, "vertex -1 of A", *both, *landmarks("negative")),
+        (2, "vertex 3.5 of A", *both, *landmarks("between")),
+        (2, "no map brings them together", *both, *landmarks("edge")),
+        (2, f"vertex {len(vertices)} of A is in no cell", "lonely.obj", "hills.obj", *landmarks("lonely")),
+        (6, "line 2", *both, *landmarks("words")),
+        (6, "line 3", *both, *landmarks("ragged")),
+        (6, "line 2", *both, *landmarks("wide")),
+        (2, "no finite number", *closed, *landmarks("nowhere")),
+        (6, "no numbers", *both, *landmarks("empty")),
+        (6, "header", *both, *landmarks("headless")),
+        (6, "missing.csv", *both, *landmarks("missing")),
+        (2, "do not lie on the unit sphere", "head.obj", "target", *landmarks("off")),
+        (2, "do not lie on the unit sphere", *closed, *landmarks("off"), "-landmark_points", "target"),
+        (2, "no vertices", "hills.obj", "target", *landmarks("pair")),
+        (2, "three coordinates", *both, *landmarks("flat"), "-landmark_points", "surface"),
+        (2, "-transfer nothing", *both, "-transfer", "nothing"),
+        (2, "no such dataset", "hills.h5", "hills.obj", "-transfer", "/cell/nothing"),
+        (2, "2 rows", *both, "-transfer", "few.csv"),
+        (2, "2 rows", *both, "-transfer", "b:few.csv"),
+        (6, "numbers are wanted", *both, "-transfer", "text.csv"),
+        (6, "missing.csv", *both, "-transfer", "missing.csv"),
+        (2, "wants a mesh for B", "hills.obj", "target", *landmarks("flat"), "-transfer", "coordinates"),
+        (2, "cannot draw landmarks", *both, *landmarks("pair"), "-method", "lbfgs"),
+        (2, "midpoints", *both, "-register_by", "midpoints"),
+        (2, "midpoints", *both, "-register_by", "midpoints", *landmarks("flat")),
+        (2, "-frames 1", *both, "-frames", 1),
+        (2, "a disk has no pose", *both, "-align", "pose"),
+        (2, "unknown option", *both, "-landmrks", "x"),
+        (3, "do not belong together", *both, "-map_a", "head.obj"),
+        (2, "coordinates", *both, "-map_a", "hills.obj"),
+    )
+    for code, words, *arguments in cases if program.ranks < 3 else cases[::4]:
+        result = program.run("register", *arguments, "-quiet", "-o", "refused.h5", "-summary", "refused.json")
+        messages = program.messages(result)
         assert result.returncode == code, (arguments, result.returncode, result.stdout, result.stderr)
-        assert any(words in line for line in program.messages(result)), (arguments, result.stderr)
-        assert not os.path.exists(program.file("refused.h5"))
+        assert len(messages) == 1 and words in messages[0], (arguments, result.stderr)
+        assert sorted(os.listdir(program.folder)) == before, arguments
 
 
 def main():
