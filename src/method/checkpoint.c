@@ -144,6 +144,8 @@ PetscErrorCode EqmCheckpointAskedToStop(EqmSolver solver, PetscBool *stop)
   size_t length;
 
   PetscFunctionBegin;
+  *stop = PETSC_FALSE;
+  if (solver->checkpoints.deaf) PetscFunctionReturn(0);
   PetscCall(EqmStopRequested(solver->comm, &solver->checkpoints.stop_file, &reason));
   PetscCall(EqmLedgerGetSeconds(solver->mesh->ledger, NULL, NULL, &seconds));
   PetscCall(EqmLedgerGetEarlier(solver->mesh->ledger, &earlier));

@@ -17,6 +17,7 @@ typedef struct {
   PetscInt resumed;                   /* iteration that this run began with */
   size_t suffix;                      /* length of what EqmSolverSetStage has put behind the user's name */
   PetscBool finished;                 /* the method itself has ended: no step follows */
+  PetscBool deaf;                     /* a map within another run's start: requests to stop are for that run */
   PetscBool failing;                  /* the last one could not be written */
 } EqmCheckpoints;
 

@@ -240,16 +240,19 @@ static PetscErrorCode JudgeFolds(EqmSolver solver)
 /* The problem's last touch, and folds mended if that can be done. */
 static PetscErrorCode End(EqmSolver solver)
 {
+  PetscBool stop = PETSC_FALSE;
+
   PetscFunctionBegin;
   if (solver->problem->finish) PetscCall(solver->problem->finish(solver));
-  if (solver->problem->unfold && solver->totals.folds > 0) {
+  if (solver->problem->unfold && solver->totals.folds > 0) PetscCall(EqmCheckpointAskedToStop(solver, &stop));
+  if (solver->problem->unfold && solver->totals.folds > 0 && !stop) {
     PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
     PetscCall(solver->problem->unfold(solver, &solver->unfolded_from, &solver->unfolded_to));
     PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
     PetscCall(EqmSolverLook(solver));
     PetscCall(EqmMonitorUnfolded(solver, "at the end"));
   }
-  PetscCall(JudgeFolds(solver));
+  if (solver->status != EQM_STATUS_STOPPED) PetscCall(JudgeFolds(solver));
   PetscFunctionReturn(0);
 }
 

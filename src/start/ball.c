@@ -110,6 +110,7 @@ static PetscErrorCode MapSurface(EqmSolver solver, EqmMesh surface, EqmSolver *s
   PetscCall(PetscOptionsPush(options));
   PetscCall(EqmSolverCreate(surface, "sphere", sphere));
   PetscCall(EqmSolverSetFromOptions(*sphere));
+  (*sphere)->checkpoints.deaf = PETSC_TRUE; /* a start that was cut short would be another start */
   PetscCall(EqmSolverSolve(*sphere));
   PetscCall(PetscOptionsPop());
   PetscCall(PetscOptionsDestroy(&options));

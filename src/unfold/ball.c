@@ -67,6 +67,8 @@ PetscErrorCode EqmBallUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *a
   PetscInt64 folds;
   PetscReal least, start = 1., end = 1.;
   EqmBarrier barrier;
+  const PetscBool at_end = (PetscBool)(solver->num_history > 0); /* a start is not cut short: it would be another */
+  PetscBool stop = PETSC_FALSE;
 
   PetscFunctionBegin;
   *before = solver->totals.folds;
@@ -76,10 +78,11 @@ PetscErrorCode EqmBallUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *a
   barrier->weight = first_weight;
   PetscCall(Compare(solver, &best, &folds, &least));
   barrier->epsilon = PetscMax(1., -.2 * least);
-  for (PetscInt round = 0; round < MOST_ROUNDS && folds > 0; round++) {
+  for (PetscInt round = 0; round < MOST_ROUNDS && folds > 0 && !stop; round++) {
     PetscCall(Descend(solver, ROUND_STEPS, &start, &end));
     PetscCall(Compare(solver, &best, &folds, &least));
     barrier->epsilon = NextEpsilon(barrier->epsilon, least, start, end);
+    if (at_end) PetscCall(EqmCheckpointAskedToStop(solver, &stop));
   }
   barrier->epsilon = wall;
   for (PetscInt round = 0; round < SETTLE_ROUNDS && folds == 0; round++) {

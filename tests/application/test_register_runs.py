@@ -222,11 +222,21 @@ def check_map_stops(program):
         code, text = let_read()
         assert code == 75 and "after iteration 0" in text and "-restart run.ck" in text, (code, text)
     program.succeed("disk", "-restart", "run.ck", "-o", "map.h5", "-quiet")
+    program.succeed("generate", "blob", "-n", 200, "-o", "blob.msh", ranks=1)
+    ball = ("ball", "blob.msh", "-max_it", 2, "-quiet", "-energy_rtol", 0)
+    program.succeed(*ball, "-o", "whole.h5", codes=(4,))
+    process, let_read = start_reading(program, "blob.msh", *ball, "-checkpoint", "ball.ck", "-o", "map.h5")
+    os.kill(program.processes(process)[0], signal.SIGUSR1)
+    code, text = let_read()
+    assert code == 75 and "after iteration 0" in text, (code, text)
+    program.succeed(*ball, "-restart", "ball.ck", "-o", "map.h5", codes=(4,))
+    difference = abs(result(program, "map.h5") - result(program, "whole.h5")).max()  # the surface's map, too, is the whole one
+    assert difference == 0.0 if program.ranks == 1 else difference < 1e-3, difference
 
 
 def main():
     equimap, ranks = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1
-    for check in (check_stops, check_kept_meshes, check_repair, check_densities):
+    for check in (check_repair, check_densities, check_kept_meshes, check_stops):
         begun = time.time()
         with tempfile.TemporaryDirectory() as folder:
             check(Program(equimap, ranks, folder))
