@@ -81,6 +81,19 @@ static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, Eq
   PetscFunctionReturn(0);
 }
 
+/* A closing table for people. */
+static PetscErrorCode View(const RegisterOptions *options, EqmRegistration registration)
+{
+  EqmMap map;
+
+  PetscFunctionBegin;
+  PetscCall(EqmRegistrationView(registration));
+  PetscCall(EqmRegistrationGetMap(registration, &map));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  seconds       %.2f\n  memory        %.0f MB in all\n  written       %s\n",
+                        (double)map->total_seconds, 1e-6 * (double)map->memory_total, options->output));
+  PetscFunctionReturn(0);
+}
+
 /* Solve, write, tell. */
 static PetscErrorCode Run(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration,
                           EqmStatus *status)
@@ -94,7 +107,7 @@ static PetscErrorCode Run(const RegisterOptions *options, EqmLedger ledger, EqmR
   if (*status == EQM_STATUS_STOPPED)
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n", EqmStatusName(*status), message));
   else
-    PetscCall(EqmRegistrationView(registration));
+    PetscCall(View(options, registration));
   PetscFunctionReturn(0);
 }
 

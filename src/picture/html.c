@@ -118,6 +118,7 @@ static void PrintProvenance(EqmAtomicFile *file, const EqmResult *result)
 {
   EqmAtomicPrint(file, "<h2>Where it came from</h2>\n<table>\n");
   PrintTextRow(file, "mesh", result->mesh_file);
+  if (result->other_file[0]) PrintTextRow(file, "registered with", result->other_file);
   PrintTextRow(file, "command", result->command);
   PrintTextRow(file, "method", result->method);
   PrintTextRow(file, "status", result->status);

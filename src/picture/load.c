@@ -50,24 +50,36 @@ static PetscErrorCode LoadCells(EqmH5 h5, EqmResult *result)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode LoadImages(EqmH5 h5, EqmResult *result)
+/* Places of the vertices, two or three coordinates each; in the plane z is 0. */
+static PetscErrorCode LoadPlaces(EqmH5 h5, const char *path, EqmResult *result, PetscInt *dim, PetscReal **places)
 {
   PetscInt64 rows, width;
   PetscReal *compact;
   PetscInt count;
 
   PetscFunctionBegin;
-  PetscCall(EqmH5GetShape(h5, "/map/coordinates", &rows, &width));
+  PetscCall(EqmH5GetShape(h5, path, &rows, &width));
   if (rows != result->num_vertices || (width != 2 && width != 3)) {
-    EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': /map/coordinates does not fit the mesh", h5->name);
+    EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': %s does not fit the mesh", h5->name, path);
   }
-  result->dim = (PetscInt)width;
-  PetscCall(LoadReals(h5, "/map/coordinates", width, &count, &compact));
-  PetscCall(PetscCalloc1(3 * count, &result->images));
+  *dim = (PetscInt)width;
+  PetscCall(LoadReals(h5, path, width, &count, &compact));
+  PetscCall(PetscCalloc1(3 * count, places));
   for (PetscInt i = 0; i < count; i++) {
-    for (PetscInt d = 0; d < result->dim; d++) result->images[3 * i + d] = compact[result->dim * i + d];
+    for (PetscInt d = 0; d < *dim; d++) (*places)[3 * i + d] = compact[*dim * i + d];
   }
   PetscCall(PetscFree(compact));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LoadImages(EqmH5 h5, EqmResult *result)
+{
+  PetscBool registered;
+
+  PetscFunctionBegin;
+  PetscCall(LoadPlaces(h5, "/map/coordinates", result, &result->dim, &result->images));
+  PetscCall(EqmH5HasDataset(h5, "/register/target", &registered));
+  if (registered) PetscCall(LoadPlaces(h5, "/register/target", result, &result->target_dim, &result->target));
   PetscFunctionReturn(0);
 }
 
@@ -98,6 +110,7 @@ static PetscErrorCode LoadAttributes(EqmH5 h5, EqmResult *result)
   PetscCall(EqmH5GetText(h5, "status", "", result->status, sizeof(result->status)));
   PetscCall(EqmH5GetText(h5, "message", "", result->message, sizeof(result->message)));
   PetscCall(EqmH5GetText(h5, "mesh_file", "", result->mesh_file, sizeof(result->mesh_file)));
+  PetscCall(EqmH5GetText(h5, "register.b.file", "", result->other_file, sizeof(result->other_file)));
   PetscCall(EqmH5GetText(h5, "version", "", result->version, sizeof(result->version)));
   PetscCall(EqmH5GetText(h5, "git_commit", "", result->commit, sizeof(result->commit)));
   PetscCall(EqmH5GetText(h5, "date", "", result->date, sizeof(result->date)));
@@ -193,6 +206,7 @@ PetscErrorCode EqmResultReset(EqmResult *result)
   PetscFunctionBegin;
   PetscCall(PetscFree(result->vertices));
   PetscCall(PetscFree(result->images));
+  PetscCall(PetscFree(result->target));
   PetscCall(PetscFree(result->cells));
   PetscCall(PetscFree(result->ratio));
   PetscCall(PetscFree(result->iteration));

@@ -14,11 +14,13 @@ static const char *BaseName(const char *path)
 
 static void DrawTitle(cairo_t *page, const EqmResult *result)
 {
-  char title[64];
+  const PetscBool has_other = (PetscBool)(result->other_file[0] != '\0');
+  char title[128];
   char vertices[48], cells[48], line[512];
   double x;
 
-  (void)snprintf(title, sizeof(title), "%.60s", result->mesh_file[0] ? BaseName(result->mesh_file) : "a map");
+  (void)snprintf(title, sizeof(title), "%.60s%s%.40s", result->mesh_file[0] ? BaseName(result->mesh_file) : "a map",
+                 has_other ? " → " : "", has_other ? BaseName(result->other_file) : "");
   EqmDrawText(page, margin, 62, 30, PETSC_TRUE, EQM_LEFT, EQM_INK, title);
   x = margin + EqmTextWidth(page, 30, PETSC_TRUE, title) + 22;
   EqmCountText(result->num_vertices, vertices, sizeof(vertices));

@@ -10,12 +10,15 @@ PETSC_EXTERN PetscErrorCode EqmReportWrite(MPI_Comm comm, const char *result_fil
 /* A result as it was stored, read back whole. */
 typedef struct {
   char command[64], method[64], status[64], message[EQM_MESSAGE_MAX], mesh_file[PETSC_MAX_PATH_LEN];
+  char other_file[PETSC_MAX_PATH_LEN]; /* of a registration: B's mesh; else empty */
   char version[64], commit[64], date[64], options[8192];
   PetscInt64 iterations, folds, ranks, threads;
   PetscReal energy_initial, energy_final, angle_mean, angle_median, seconds;
   PetscInt num_vertices, num_cells, cell_size, dim;
   PetscReal *vertices; /* 3 * num_vertices */
   PetscReal *images;   /* 3 * num_vertices; planar maps have z = 0 */
+  PetscReal *target;   /* of a registration: where vertices lie in the target, 3 * num_vertices; else NULL */
+  PetscInt target_dim; /* coordinates there */
   PetscInt *cells;     /* cell_size * num_cells */
   PetscReal *ratio;    /* per cell */
   EqmStatistics ratio_statistics;

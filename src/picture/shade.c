@@ -61,8 +61,9 @@ static void ColorSample(const EqmRaster *raster, const EqmScene *scene, int x, i
   double light = 1.0;
 
   if (scene->pulled_back) {
+    const PetscReal *const places = scene->result->target ? scene->result->target : scene->result->images;
     double image[3] = {0, 0, 0};
-    for (int k = 0; k < 9; k++) image[k % 3] += weight[k / 3] * scene->result->images[3 * v[k / 3] + k % 3];
+    for (int k = 0; k < 9; k++) image[k % 3] += weight[k / 3] * places[3 * v[k / 3] + k % 3];
     EqmColorOfPattern(scene->pattern, image, rgb);
   } else {
     EqmColorOfRatio(scene->scale, scene->result->ratio[scene->faces->cell[raster->face[s]]], rgb);

@@ -23,6 +23,7 @@ static PetscBool IsConformal(const EqmResult *result)
 
 static EqmPattern PatternOf(const EqmResult *result)
 {
+  if (result->target) return result->target_dim == 3 ? EQM_PATTERN_SPHERE : EQM_PATTERN_DISK;
   if (result->dim == 3) return IsConformal(result) ? EQM_PATTERN_SPHERE_SQUARES : EQM_PATTERN_SPHERE;
   if (IsConformal(result)) return EQM_PATTERN_DISK_SQUARES;
   return strcmp(result->command, "square") ? EQM_PATTERN_DISK : EQM_PATTERN_SQUARE;
@@ -37,7 +38,8 @@ static PetscErrorCode PaintView(cairo_t *page, const EqmResult *result, EqmColor
   cairo_surface_t *image;
 
   PetscFunctionBegin;
-  if (view->points == result->images) scene.relief = 0.5; /* colours count for more than shape there */
+  if (view->points == result->images && !result->target)
+    scene.relief = 0.5; /* colours count for more than shape there */
   if (!view->pulled_back && view->faces->num_faces < MANY_FACES) scene.edges = 0.25;
   PetscCall(EqmRasterCreate(OVERSAMPLING * size, &raster));
   PetscCall(EqmRasterDraw(&raster, &view->camera, view->faces, view->points, result->num_vertices));
@@ -173,12 +175,41 @@ static PetscErrorCode DrawBall(cairo_t *page, const EqmResult *result, EqmColorS
   PetscFunctionReturn(0);
 }
 
+/* A registration: A and the same on B, with a pattern of the target, which tells what corresponds, and with the ratio.
+ */
+static PetscErrorCode DrawRegistered(cairo_t *page, const EqmResult *result, EqmColorScale scale, EqmBox box,
+                                     double pixels_per_unit)
+{
+  EqmFaces faces;
+  EqmCamera of_a, of_b;
+  float *normals_a, *normals_b;
+
+  PetscFunctionBegin;
+  PetscCall(EqmFacesOfSurface(result, &faces));
+  PetscCall(EqmFacesNormals(&faces, result->vertices, result->num_vertices, &normals_a));
+  PetscCall(EqmFacesNormals(&faces, result->images, result->num_vertices, &normals_b));
+  of_a = EqmCameraGuess(&faces, result->vertices);
+  of_b = of_a; /* seen from the same side, so that what differs is the shape */
+  EqmCameraFit(&of_b, &faces, result->images);
+  const View views[] = {{"A, coloured by ratio", &faces, result->vertices, normals_a, of_a, PETSC_FALSE},
+                        {"A, with a pattern", &faces, result->vertices, normals_a, of_a, PETSC_TRUE},
+                        {"The pattern carried to B", &faces, result->images, normals_b, of_b, PETSC_TRUE},
+                        {"A on B, coloured by ratio", &faces, result->images, normals_b, of_b, PETSC_FALSE}};
+  PetscCall(PaintRow(page, result, scale, views, box, pixels_per_unit));
+  PetscCall(PetscFree(normals_a));
+  PetscCall(PetscFree(normals_b));
+  PetscCall(EqmFacesReset(&faces));
+  PetscFunctionReturn(0);
+}
+
 /* Draw the row of pictures: the surface or solid, a pattern pulled back to it, its image. Not collective. */
 PetscErrorCode EqmDrawViews(cairo_t *page, const EqmResult *result, EqmColorScale scale, EqmBox box,
                             double pixels_per_unit)
 {
   PetscFunctionBegin;
-  if (result->dim == 2)
+  if (result->target)
+    PetscCall(DrawRegistered(page, result, scale, box, pixels_per_unit));
+  else if (result->dim == 2)
     PetscCall(DrawPlanar(page, result, scale, box, pixels_per_unit));
   else if (result->cell_size == 3)
     PetscCall(DrawSphere(page, result, scale, box, pixels_per_unit));

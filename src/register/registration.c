@@ -267,6 +267,21 @@ PetscErrorCode EqmRegistrationViewInput(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
+/* Where vertices fell outside the other's image. */
+static PetscErrorCode ViewOutside(EqmRegistration r)
+{
+  const EqmLocation on_b = r->forward, on_a = r->inverse;
+
+  PetscFunctionBegin;
+  if (on_b->num_clamped + on_a->num_clamped == 0) PetscFunctionReturn(0);
+  PetscCall(PetscPrintf(r->comm,
+                        "  outside       %" PetscInt64_FMT
+                        " vertices of A lay outside B's image, by %.2e at most, and %" PetscInt64_FMT
+                        " of B outside A's, by %.2e: taken to the closest point\n",
+                        on_b->num_clamped, (double)on_b->most_distant, on_a->num_clamped, (double)on_a->most_distant));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmRegistrationView(EqmRegistration r)
 {
   const EqmRegisterFigures *const f = &r->figures;
@@ -287,13 +302,12 @@ PetscErrorCode EqmRegistrationView(EqmRegistration r)
                           "  frames        %" PetscInt_FMT ", at most %" PetscInt64_FMT " folded cells in one\n",
                           r->set.frames, f->most_frame_folds));
   if (!r->bare) {
-    PetscCall(PetscPrintf(r->comm, "  d(phi)        %.4e   after the best rigid motion %.4e (radii)\n",
-                          (double)f->dissimilarity, (double)f->dissimilarity_rigid));
-    PetscCall(PetscPrintf(r->comm,
-                          "  outside       %" PetscInt64_FMT " vertices of A clamped, by %.2e at most; %" PetscInt64_FMT
-                          " of B, by %.2e\n",
-                          r->forward->num_clamped, (double)r->forward->most_distant, r->inverse->num_clamped,
-                          (double)r->inverse->most_distant));
+    PetscCall(
+        PetscPrintf(r->comm,
+                    "  d(phi)        %.4e   mean distance from A to its points on B in radii; after the best rigid "
+                    "motion %.4e\n",
+                    (double)f->dissimilarity, (double)f->dissimilarity_rigid));
+    PetscCall(ViewOutside(r));
   }
   PetscFunctionReturn(0);
 }

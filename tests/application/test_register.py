@@ -105,6 +105,9 @@ def check_landmarks(program):
     series = program.read("out.morph.xmf").decode()
     assert series.count("<Time ") == 4 and 'CollectionType="Temporal"' in series and "/morph/frame_003" in series
     file.close()
+    drawn = program.run("report", "out.h5", "-o", "out.html", ranks=1)
+    if "cairo" not in drawn.stderr:  # a build without it draws nothing
+        assert drawn.returncode == 0 and b"hills.obj" in program.read("out.html") and b"deformed.obj" in program.read("out.html")
     program.succeed("disk", "hills.obj", "-o", "a.h5", "-quiet", "-ratio_tol", "3e-3")
     program.succeed("disk", "deformed.obj", "-o", "b.h5", "-quiet", "-ratio_tol", "3e-3")
     again, file = run(program, "a.h5", "b.h5", "-landmarks", "pairs.csv", "-quiet", "-landmark_start", "flow")
