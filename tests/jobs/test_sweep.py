@@ -19,7 +19,7 @@ sys.path[:0] = [str(JOBS), str(HERE.parent / "support")]
 import slurm  # noqa: E402
 import sweep_table  # noqa: E402
 
-PATIENCE = 150  # seconds, for what takes a few on an idle machine
+PATIENCE = 300  # seconds, for what takes a few, or twenty, on an idle machine
 
 HEADER = "name,command,mesh,preset,options,paper,ranks,threads,against\n"
 ENDLESS = "method: rgd\nmax_it: 1000000\nenergy_rtol: 0\ncheckpoint_every: 100\n"
