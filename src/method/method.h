@@ -228,6 +228,9 @@ PETSC_INTERN PetscErrorCode EqmSphereOrient(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmBallStart(EqmSolver solver, PetscInt steps);
 
 /* ---- bijectivity repair (src/unfold) */
+/* Each tries to unfold solver->place and keeps the map with the fewest folds; `before` and `after` count them.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmDiskUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after);
 PETSC_INTERN PetscErrorCode EqmBallUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after);
 PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after);
 

@@ -111,6 +111,7 @@ static const EqmProblem problems[] = {
      .takes = HasBoundary,
      .create_domain = CreateDisk,
      .objective = &EqmObjectiveConformal,
+     .unfold = EqmDiskUnfold,
      .starts = EQM_STARTS_PLANE,
      OFFERS(conformal_in_disk)},
     {.target = "conformal",

@@ -214,7 +214,10 @@ static PetscErrorCode Iterate(EqmSolver solver)
 /* A map with folds is no success, wherever they are. */
 static PetscErrorCode JudgeFolds(EqmSolver solver)
 {
+  const EqmOffer *const offer = &solver->problem->offers[0];
   const PetscBool solid = (PetscBool)(solver->mesh->cell_size == 4);
+  const PetscBool is_default =
+      (PetscBool)(solver->method == offer->method && !strcmp(solver->settings.start, offer->start));
   PetscInt64 on_boundary = 0;
 
   PetscFunctionBegin;
@@ -233,7 +236,10 @@ static PetscErrorCode JudgeFolds(EqmSolver solver)
   } else {
     PetscCall(PetscStrlcat(solver->message, ";", sizeof(solver->message)));
   }
-  PetscCall(PetscStrlcat(solver->message, " try the default method and its start", sizeof(solver->message)));
+  PetscCall(PetscStrlcat(solver->message,
+                         is_default ? " cells of a better shape, or finer ones, may help"
+                                    : " try the default method and its start",
+                         sizeof(solver->message)));
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,36 @@
+/* Angle-preserving maps to the disk of surfaces with many obtuse triangles: the harmonic map folds, the one that is
+   kept does not. */
+#include "support/runs.h"
+
+static PetscErrorCode TestHills(const char *options, EqmStatus status)
+{
+  TestMesh test;
+  EqmSolver solver;
+  PetscBool in_order;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 800, 1, &test));
+  PetscCall(TestSolve(test.mesh, "conformal", options, &solver));
+  CHECK(solver->unfolded_from > 5, "only %d folds: nothing is tested", (int)solver->unfolded_from);
+  CHECK(solver->unfolded_to == 0 && solver->totals.folds == 0, "%d and %d folds are left", (int)solver->unfolded_to,
+        (int)solver->totals.folds);
+  CHECK(solver->totals.smallest > 0., "smallest image %g", (double)solver->totals.smallest);
+  CHECK(solver->status == status, "status %d: %s", (int)solver->status, solver->message);
+  PetscCall(EqmDomainBoundaryInOrder(solver->domain, &solver->place, &in_order));
+  CHECK(in_order, "the boundary is not in its order");
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestHills("", EQM_STATUS_CONVERGED));
+  PetscCall(TestHills("-method qiem -max_it 5", EQM_STATUS_NOT_CONVERGED));
+  PetscCall(TestSameOnRanks("hills", 800, "conformal", "", 1e-7, 1.));
+  PetscCall(TestSameWithThreads(PETSC_COMM_SELF, "hills", 800, "conformal", ""));
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(0);
+}
