@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 import h5py
 import numpy
@@ -66,6 +67,22 @@ def check_copy(program, shape, count):
     assert figures["transfer"]["to_b"]["coordinates"]["round_trip"] < 1e-5
 
 
+def check_series(program, count):
+    """The time series as a reader of XDMF goes through it: times from 0 to 1, arrays that are there in the size that is told."""
+    series = xml.etree.ElementTree.parse(program.file("out.morph.xmf")).getroot().find("Domain").find("Grid")
+    assert series.get("CollectionType") == "Temporal"
+    frames = series.findall("Grid")
+    times = [float(frame.find("Time").get("Value")) for frame in frames]
+    assert len(frames) == count and numpy.allclose(times, numpy.linspace(0, 1, count), atol=1e-15), times
+    for number, frame in enumerate(frames):
+        assert frame.find("Geometry").find("DataItem").text.strip().endswith(f":/morph/frame_{number:03d}")
+        for item in frame.iter("DataItem"):
+            name, path = item.text.strip().split(":")
+            with h5py.File(program.file(name), "r") as file:
+                assert " ".join(map(str, file[path].shape)) == item.get("Dimensions"), path
+                assert numpy.isfinite(file[path][...]).all() and file[path].dtype == {"Float": "f8", "Int": "i8"}[item.get("NumberType")]
+
+
 def deform(vertices):
     size = numpy.ptp(vertices, axis=0).max()
     x, y, _ = (vertices / size).T
@@ -102,8 +119,7 @@ def check_landmarks(program):
         assert abs(file[f"/morph/frame_{frame:03d}"][...] - frame_points).max() < 1e-12
         written, written_cells = read_obj(program.file(f"out.frame{frame:03d}.obj"))
         assert numpy.array_equal(written_cells, cells) and abs(written - frame_points).max() < 1e-12
-    series = program.read("out.morph.xmf").decode()
-    assert series.count("<Time ") == 4 and 'CollectionType="Temporal"' in series and "/morph/frame_003" in series
+    check_series(program, 4)
     file.close()
     drawn = program.run("report", "out.h5", "-o", "out.html", ranks=1)
     if "cairo" not in drawn.stderr:  # a build without it draws nothing
@@ -125,7 +141,9 @@ def check_sphere(program):
     program.write("pairs.csv", "a,b\n" + "".join(f"{i},{i}\n" for i in chosen))
     program.write("points.csv", "a,x,y,z\n" + "".join("%d,%r,%r,%r\n" % (i, *deformed[i].tolist()) for i in chosen))
     for options in (["-register_by", "midpoints", "-landmarks", "pairs.csv"], ["-landmarks", "points.csv"]):
-        summary, file = run(program, "head.obj", "deformed.obj", "-quiet", *options)
+        summary, file = run(program, "head.obj", "deformed.obj", "-quiet", "-frames", 3, *options)
+        check_series(program, 3)
+        assert read_obj(program.file("out.frame002.obj"))[0].shape == vertices.shape
         figures = summary["register"]["landmarks"]
         assert summary["folds"] == 0 and summary["register"]["b"]["folds"] == 0
         assert figures["error"]["max"] <= 2e-3 and figures["space_error"]["max"] <= 2e-2, figures
@@ -157,7 +175,8 @@ def check_ball(program):
     summary, file = run(program, "a.h5", "b.h5", "-quiet", "-frames", 3, "-transfer", "coordinates")
     assert summary["register"]["transfer"]["to_b"]["coordinates"]["round_trip"] < 1e-5
     assert summary["register"]["dissimilarity_rigid"] < 1e-6 and abs(file["/map/coordinates"][...] - turned).max() < 1e-5
-    assert os.path.exists(program.file("out.frame002.vtu"))
+    check_series(program, 3)
+    program.succeed("check", "out.frame002.vtu", ranks=1)
     file.close()
     summary, file = run(program, "a.h5", "b.h5", "-quiet", "-align", "pose")
     assert summary["register"]["dissimilarity_rigid"] > 1e-2, "the pose of a turned solid is another one"
