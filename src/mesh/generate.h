@@ -46,4 +46,10 @@ PETSC_INTERN void EqmPlaceBlob(const EqmLatticePlan *, const PetscReal[3], Petsc
 /* A number in [0, 1) that depends on its arguments alone. */
 PETSC_INTERN PetscReal EqmHashUniform(PetscInt seed, PetscInt index, PetscInt channel);
 
+/* How far a vertex may be moved, in spacings: far enough to be irregular, near enough for no triangle to turn over. */
+static inline PetscReal EqmLatticeJitter(const EqmLatticePlan *plan, PetscInt vertex, PetscInt channel)
+{
+  return 0.18 * (2.0 * EqmHashUniform(plan->seed, vertex, channel) - 1.0);
+}
+
 #endif

@@ -1,14 +1,6 @@
-/* Lattices of the test shapes: rectangles and their closed kin, a hexagon in rings, the subdivided icosahedron in rows,
-   a cube of tetrahedra. Numbers run row by row. */
+/* Lattices of the test shapes: rectangles and their closed kin, a hexagon in rings, the subdivided icosahedron in rows.
+   Numbers run row by row. */
 #include "generate.h"
-
-/* How far a vertex may be moved, in spacings: far enough to be irregular, near enough for no triangle to turn over. */
-#define EQM_JITTER 0.18
-
-static PetscReal Jitter(const EqmLatticePlan *plan, PetscInt vertex, PetscInt channel)
-{
-  return EQM_JITTER * (2.0 * EqmHashUniform(plan->seed, vertex, channel) - 1.0);
-}
 
 /* ---- rectangles: size[0] columns, size[1] rows of vertices ---- */
 
@@ -71,7 +63,7 @@ static void GridParameter(const EqmLatticePlan *plan, EqmSides left_right, EqmSi
   for (int k = 0; k < 2; k++) {
     const PetscBool open = (PetscBool)(side[k] == EQM_SIDES_OPEN);
     const PetscBool on_side = (PetscBool)(open && (place[k] == 0 || place[k] == plan->size[k] - 1));
-    const PetscReal moved = on_side ? 0.0 : Jitter(plan, vertex, k);
+    const PetscReal moved = on_side ? 0.0 : EqmLatticeJitter(plan, vertex, k);
 
     parameter[k] = (place[k] + moved) / (open ? plan->size[k] - 1 : plan->size[k]);
   }
@@ -125,8 +117,8 @@ static void ParameterHexagon(const EqmLatticePlan *plan, PetscInt vertex, PetscR
   const PetscInt ring = vertex ? RingOf(3, 1, vertex - 1) + 1 : 0,
                  place = vertex ? vertex - 1 - 3 * ring * (ring - 1) : 0;
   const PetscBool on_boundary = (PetscBool)(ring == plan->size[0]);
-  const PetscReal radius = (ring + (on_boundary || !ring ? 0.0 : Jitter(plan, vertex, 0))) / plan->size[0];
-  const PetscReal angle = ring ? 2.0 * PETSC_PI * (place + Jitter(plan, vertex, 1)) / (6 * ring) : 0.0;
+  const PetscReal radius = (ring + (on_boundary || !ring ? 0.0 : EqmLatticeJitter(plan, vertex, 0))) / plan->size[0];
+  const PetscReal angle = ring ? 2.0 * PETSC_PI * (place + EqmLatticeJitter(plan, vertex, 1)) / (6 * ring) : 0.0;
 
   parameter[0] = radius * PetscCosReal(angle);
   parameter[1] = radius * PetscSinReal(angle);
@@ -249,7 +241,7 @@ static void ParameterIcosahedron(const EqmLatticePlan *plan, PetscInt vertex, Pe
   PetscReal norm = 0.0;
 
   IcosahedronPlace(f, vertex, corner, weight);
-  for (int k = 0; k < 3; k++) parameter[k] = Jitter(plan, vertex, k) / f;
+  for (int k = 0; k < 3; k++) parameter[k] = EqmLatticeJitter(plan, vertex, k) / f;
   for (int c = 0; c < 3; c++) {
     PetscReal x[3];
 
@@ -289,59 +281,3 @@ static void CellIcosahedron(const EqmLatticePlan *plan, PetscInt cell, PetscInt 
 }
 
 const EqmLattice EqmLatticeIcosahedron = {PlanIcosahedron, ParameterIcosahedron, CellIcosahedron};
-
-/* ---- cube of 2 h x 2 h x 2 h small cubes, six tetrahedra each, mirrored at the middle planes so that every small
-   cube's diagonal points to the centre: no edge then cuts a corner and no tetrahedron lies in the boundary; size[0] = 2
-   h ---- */
-
-static void PlanCube(PetscInt n, EqmLatticePlan *plan)
-{
-  const PetscInt k = PetscMax(4, 2 * (PetscInt)((PetscPowReal(n, 1.0 / 3.0) - 1.0) / 2.0 + 0.5));
-
-  plan->cell_size = 4;
-  plan->size[0] = k;
-  plan->num_vertices = (k + 1) * (k + 1) * (k + 1);
-  plan->num_cells = 6 * k * k * k;
-}
-
-static void ParameterCube(const EqmLatticePlan *plan, PetscInt vertex, PetscReal parameter[3])
-{
-  const PetscInt k = plan->size[0],
-                 place[3] = {vertex % (k + 1), vertex / (k + 1) % (k + 1), vertex / (k + 1) / (k + 1)};
-
-  for (int c = 0; c < 3; c++) {
-    const PetscBool on_side = (PetscBool)(place[c] == 0 || place[c] == k);
-
-    parameter[c] = 2.0 * (place[c] + (on_side ? 0.0 : Jitter(plan, vertex, c))) / k - 1.0;
-  }
-}
-
-static void CellCube(const EqmLatticePlan *plan, PetscInt cell, PetscInt vertices[])
-{
-  static const int path[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  const PetscInt k = plan->size[0], small = cell / 6, order = cell % 6;
-  const PetscInt cube[3] = {small % k, small / k % k, small / k / k}, stride[3] = {1, k + 1, (k + 1) * (k + 1)};
-  PetscBool mirrored = (PetscBool)(order >= 3);
-  PetscInt place = 0;
-
-  for (int c = 0; c < 3; c++) {
-    const PetscBool far = (PetscBool)(cube[c] >= k / 2);
-
-    place += (cube[c] + (far ? 1 : 0)) * stride[c];
-    if (far) mirrored = (PetscBool)!mirrored;
-  }
-  vertices[0] = place;
-  for (int step = 0; step < 3; step++) {
-    const int c = path[order][step];
-
-    place += cube[c] >= k / 2 ? -stride[c] : stride[c];
-    vertices[step + 1] = place;
-  }
-  if (mirrored) {
-    place = vertices[2];
-    vertices[2] = vertices[3];
-    vertices[3] = place;
-  }
-}
-
-const EqmLattice EqmLatticeCube = {PlanCube, ParameterCube, CellCube};
