@@ -89,6 +89,7 @@ static PetscErrorCode View(const RegisterOptions *options, EqmRegistration regis
   PetscFunctionBegin;
   PetscCall(EqmRegistrationView(registration));
   PetscCall(EqmRegistrationGetMap(registration, &map));
+  if (map->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  seconds       %.2f\n  memory        %.0f MB in all\n  written       %s\n",
                         (double)map->total_seconds, 1e-6 * (double)map->memory_total, options->output));
   PetscFunctionReturn(0);
@@ -98,16 +99,11 @@ static PetscErrorCode View(const RegisterOptions *options, EqmRegistration regis
 static PetscErrorCode Run(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration,
                           EqmStatus *status)
 {
-  const char *message;
-
   PetscFunctionBegin;
   PetscCall(EqmRegistrationSolve(registration));
-  PetscCall(EqmRegistrationGetStatus(registration, status, &message));
+  PetscCall(EqmRegistrationGetStatus(registration, status, NULL));
   PetscCall(Write(options, ledger, registration));
-  if (*status == EQM_STATUS_STOPPED)
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n", EqmStatusName(*status), message));
-  else
-    PetscCall(View(options, registration));
+  PetscCall(View(options, registration));
   PetscFunctionReturn(0);
 }
 

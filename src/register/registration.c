@@ -288,6 +288,10 @@ PetscErrorCode EqmRegistrationView(EqmRegistration r)
   const EqmDistortion *const d = &r->map->distortion;
 
   PetscFunctionBegin;
+  if (r->status == EQM_STATUS_STOPPED) {
+    if (!r->told) PetscCall(PetscPrintf(r->comm, "%s: %s\n", EqmStatusName(r->status), r->message));
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscPrintf(r->comm, "\n%s -> %s by the %s\n  %s: %s\n", r->a.soup->file,
                         r->bare ? "the target" : r->b.soup->file, r->target, EqmStatusName(r->status), r->message));
   PetscCall(PetscPrintf(r->comm, "  energy        %.6e of the map of A to the target, %" PetscInt64_FMT " folds\n",

@@ -80,6 +80,7 @@ struct _p_EqmRegistration {
   EqmMap map;
   EqmMap found;      /* the same of A's mended mesh; NULL where nothing was mended */
   PetscInt stage;    /* minimisations so far: each has a checkpoint of its own */
+  PetscBool told;    /* that it was stopped has been said on the screen */
   PetscBool unsaved; /* the last of them could not be written */
   EqmStopFile stop_file;
   char kept[PETSC_MAX_PATH_LEN]; /* what checkpoints say of the run's copies of its meshes */

@@ -61,6 +61,7 @@ PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver)
   r->unsaved = solver->checkpoints.failing;
   if (solver->status != EQM_STATUS_STOPPED) PetscFunctionReturn(0);
   r->status = solver->status;
+  r->told = (PetscBool)!r->set.quiet; /* by the solver */
   PetscCall(PetscStrncpy(r->message, solver->message, sizeof(r->message)));
   PetscFunctionReturn(0);
 }

@@ -114,7 +114,7 @@ def check_goes_on(program, run, files, kept, *options):
     written = [os.stat(program.file(name)).st_mtime_ns for name in kept]
     shutil.copy(program.file("run.ck.h5.1"), program.file("then.h5.1"))
     move(program, files, True)
-    for words, old in ((run, "run.ck.h5"), (run[:1], "then.h5")):
+    for words, old in ((run, "run.ck.h5"), (run[:1], "then.h5")):  # named as before, and not at all
         told = program.succeed(*words, *options, "-restart", old, "-checkpoint", "run.ck.h5", "-o", "on.h5").stdout
         assert all(f"the run's own copy, './{name}'" in told for name in kept[:len(files)]), told
         difference = abs(result(program, "on.h5") - result(program, "whole.h5")).max()
@@ -203,7 +203,7 @@ def check_stops(program):
     program.succeed(*run)  # the file STOP, which is still there, is an old one
     os.remove(program.file("out.h5"))
     timed = program.succeed(*run, "-restart", "run.ck.h5", "-wall_time", "1e-9", codes=(75,))  # only the end is left to do
-    assert "after 2 minimisations" in timed.stdout and "-restart run.ck.h5\n" in timed.stdout, timed.stdout
+    assert timed.stdout.count("to go on") == 1 and "after 2 minimisations" in timed.stdout and "-restart run.ck.h5\n" in timed.stdout, timed.stdout
     assert not os.path.exists(program.file("out.h5")) and summary(program, "out.json")["exit_code"] == 75
     program.succeed(*run, "-restart", "run.ck.h5")
     difference = abs(result(program, "out.h5") - result(program, "whole.h5")).max()
