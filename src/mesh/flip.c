@@ -6,60 +6,17 @@
    Every triangle lives on the rank that has its cell, every edge is looked after by one rank. In a round, triangles
    that have changed tell their edges; edges that are not Delaunay ask both their triangles; a triangle says yes to one;
    edges with two yeses flip. */
-#include "mesh/build.h"
+#include "mesh/flip.h"
 #include "base/exchange.h"
-#include "base/rows.h"
 #include "energy/kernel.h"
 
-/* Edge and length k are opposite corner k. */
 typedef struct {
-  PetscInt vertex[3], edge[3];
-  PetscReal length[3];
-} Triangle;
-
-/* A triangle as one of its edges sees it; also the message that tells the edge. */
-typedef struct {
-  PetscInt edge, rank, triangle, corner;
-  Triangle shape;
-} Side;
-
-typedef struct {
-  PetscBool known[2], dirty;
-  PetscInt consents;
-  Side side[2]; /* where the edge runs from the lower to the higher vertex, and the other */
-} Edge;
-
-typedef struct {
-  MPI_Comm comm;
-  PetscMPIInt rank, size;
-  PetscInt num_triangles, num_edges;
-  Triangle *triangle;
-  PetscBool *changed;
-  PetscInt *claimed; /* per triangle: the edge that it gives itself to in this round, or -1 */
-  Edge *edge;        /* edge number size * k + rank is at k */
-  PetscInt64 flips;
-} Flipper;
-
-typedef struct {
-  PetscInt low, high, rank, triangle, corner;
-} HalfEdge;
-
-typedef struct {
-  PetscInt triangle, corner, edge;
-} Name; /* of an edge, for its triangle; as a claim: the edge asks the triangle */
-
-typedef struct {
-  PetscInt triangle, unused;
-  Triangle shape;
+  PetscInt triangle, unused; /* no gap, whose bytes would travel undefined */
+  EqmFlipTriangle shape;
 } Update;
 
-/* Messages of any kind; each is a whole number of integers long. `received` is the caller's to PetscFree. */
-#define SEND(flipper, count, message, destination, num_received, received)                                             \
-  EqmExchange((flipper)->comm, count, (PetscInt)(sizeof(*(message)) / sizeof(PetscInt)), destination,                  \
-              (const PetscInt *)(message), num_received, (PetscInt **)(received))
-
 /* Cotangent at a corner. */
-static PetscReal Cotangent(const Triangle *t, PetscInt corner)
+static PetscReal Cotangent(const EqmFlipTriangle *t, PetscInt corner)
 {
   const PetscReal a = t->length[corner], b = t->length[(corner + 1) % 3], c = t->length[(corner + 2) % 3];
 
@@ -71,77 +28,12 @@ static PetscInt Mix(PetscInt edge)
   return (PetscInt)(((unsigned)edge * 2654435761u) >> 1);
 }
 
-/* Lengths of the cells' edges, from the vertices' places in the slabs. */
-static PetscErrorCode MakeTriangles(EqmSoup soup, Flipper *f)
-{
-  const PetscInt n = f->num_triangles;
-  PetscReal *place;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc3(n, &f->triangle, n, &f->changed, n, &f->claimed));
-  PetscCall(PetscMalloc1(9 * n, &place));
-  PetscCall(EqmFetchRows(soup->comm, soup->vertex_end - soup->vertex_start, 3 * n, soup->cells, MPIU_REAL, 3,
-                         soup->vertices, place));
-  for (PetscInt t = 0; t < n; t++) {
-    for (PetscInt a = 0; a < 3; a++) {
-      const PetscReal *const p = place + 9 * t + 3 * ((a + 1) % 3), *const q = place + 9 * t + 3 * ((a + 2) % 3);
-      f->triangle[t].vertex[a] = soup->cells[3 * t + a];
-      f->triangle[t].length[a] = PetscSqrtReal(PetscSqr(p[0] - q[0]) + PetscSqr(p[1] - q[1]) + PetscSqr(p[2] - q[2]));
-    }
-    f->changed[t] = PETSC_TRUE;
-  }
-  PetscCall(PetscFree(place));
-  PetscFunctionReturn(0);
-}
-
-static int CompareHalfEdges(const void *a, const void *b)
-{
-  const HalfEdge *const s = a, *const t = b;
-
-  if (s->low != t->low) return s->low < t->low ? -1 : 1;
-  return (s->high > t->high) - (s->high < t->high);
-}
-
-/* Give every edge a number, and let its triangles know. */
-static PetscErrorCode NameEdges(Flipper *f)
-{
-  const PetscInt n = 3 * f->num_triangles;
-  PetscInt num_received, num_names;
-  PetscMPIInt *destination;
-  HalfEdge *half, *received;
-  Name *name, *names;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc2(n, &half, n, &destination));
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscInt *const v = f->triangle[k / 3].vertex, p = v[(k + 1) % 3], q = v[(k + 2) % 3];
-    half[k] = (HalfEdge){PetscMin(p, q), PetscMax(p, q), f->rank, k / 3, k % 3};
-    destination[k] = (PetscMPIInt)(half[k].low % f->size);
-  }
-  PetscCall(SEND(f, n, half, destination, &num_received, &received));
-  PetscCall(PetscFree2(half, destination));
-  qsort(received, (size_t)num_received, sizeof(HalfEdge), CompareHalfEdges);
-  PetscCall(PetscMalloc2(num_received, &name, num_received, &destination));
-  for (PetscInt k = 0; k < num_received; k++) {
-    if (k == 0 || CompareHalfEdges(&received[k], &received[k - 1])) f->num_edges++;
-    name[k] = (Name){received[k].triangle, received[k].corner, f->size * (f->num_edges - 1) + f->rank};
-    destination[k] = (PetscMPIInt)received[k].rank;
-  }
-  PetscCall(PetscFree(received));
-  PetscCall(SEND(f, num_received, name, destination, &num_names, &names));
-  for (PetscInt k = 0; k < num_names; k++) f->triangle[names[k].triangle].edge[names[k].corner] = names[k].edge;
-  PetscCall(PetscFree(names));
-  PetscCall(PetscFree2(name, destination));
-  PetscCall(PetscCalloc1(f->num_edges, &f->edge));
-  PetscFunctionReturn(0);
-}
-
 /* Triangles that have changed tell their edges. */
-static PetscErrorCode TellEdges(Flipper *f)
+static PetscErrorCode TellEdges(EqmFlipper *f)
 {
   PetscInt count = 0, num_received;
   PetscMPIInt *destination;
-  Side *side, *received;
+  EqmFlipSide *side, *received;
 
   PetscFunctionBegin;
   for (PetscInt t = 0; t < f->num_triangles; t++) count += f->changed[t] ? 3 : 0;
@@ -150,15 +42,15 @@ static PetscErrorCode TellEdges(Flipper *f)
   for (PetscInt t = 0; t < f->num_triangles; t++) {
     for (PetscInt a = 0; a < 3 && f->changed[t]; a++) {
       destination[count] = (PetscMPIInt)(f->triangle[t].edge[a] % f->size);
-      side[count++] = (Side){f->triangle[t].edge[a], f->rank, t, a, f->triangle[t]};
+      side[count++] = (EqmFlipSide){f->triangle[t].edge[a], f->rank, t, a, f->triangle[t]};
     }
     f->changed[t] = PETSC_FALSE;
   }
-  PetscCall(SEND(f, count, side, destination, &num_received, &received));
+  PetscCall(EqmExchangeBytes(f->comm, count, sizeof(*side), destination, side, &num_received, &received));
   for (PetscInt k = 0; k < num_received; k++) {
     const PetscInt *const v = received[k].shape.vertex, a = received[k].corner;
     const PetscInt which = v[(a + 1) % 3] < v[(a + 2) % 3] ? 0 : 1;
-    Edge *const edge = &f->edge[received[k].edge / f->size];
+    EqmFlipEdge *const edge = &f->edge[received[k].edge / f->size];
     edge->side[which] = received[k];
     edge->known[which] = edge->dirty = PETSC_TRUE;
   }
@@ -168,9 +60,9 @@ static PetscErrorCode TellEdges(Flipper *f)
 }
 
 /* Would a flip help, and is there something to flip? No edge from a vertex to itself is made. */
-static PetscBool WantsToFlip(const Edge *edge)
+static PetscBool WantsToFlip(const EqmFlipEdge *edge)
 {
-  const Side *const a = &edge->side[0], *const b = &edge->side[1];
+  const EqmFlipSide *const a = &edge->side[0], *const b = &edge->side[1];
   PetscReal cot[2];
 
   if (!edge->known[0] || !edge->known[1]) return PETSC_FALSE;
@@ -181,11 +73,11 @@ static PetscBool WantsToFlip(const Edge *edge)
 }
 
 /* Edges that want to flip ask both their triangles; a triangle gives itself to one of those that ask. */
-static PetscErrorCode AskTriangles(Flipper *f, PetscInt64 *asking)
+static PetscErrorCode AskTriangles(EqmFlipper *f, PetscInt64 *asking)
 {
   PetscInt count = 0, num_received;
   PetscMPIInt *destination;
-  Name *claim, *received;
+  EqmEdgeName *claim, *received;
 
   PetscFunctionBegin;
   *asking = 0;
@@ -198,10 +90,10 @@ static PetscErrorCode AskTriangles(Flipper *f, PetscInt64 *asking)
   for (PetscInt e = 0; e < f->num_edges; e++) {
     for (PetscInt s = 0; s < 2 && f->edge[e].dirty; s++) {
       destination[count] = (PetscMPIInt)f->edge[e].side[s].rank;
-      claim[count++] = (Name){f->edge[e].side[s].triangle, s, f->size * e + f->rank};
+      claim[count++] = (EqmEdgeName){f->edge[e].side[s].triangle, s, f->size * e + f->rank};
     }
   }
-  PetscCall(SEND(f, count, claim, destination, &num_received, &received));
+  PetscCall(EqmExchangeBytes(f->comm, count, sizeof(*claim), destination, claim, &num_received, &received));
   PetscCall(PetscFree2(claim, destination));
   for (PetscInt t = 0; t < f->num_triangles; t++) f->claimed[t] = -1;
   for (PetscInt k = 0; k < num_received; k++) {
@@ -216,7 +108,7 @@ static PetscErrorCode AskTriangles(Flipper *f, PetscInt64 *asking)
 }
 
 /* The triangles' consents travel to the edges. */
-static PetscErrorCode CollectConsents(Flipper *f)
+static PetscErrorCode CollectConsents(EqmFlipper *f)
 {
   PetscInt count = 0, num_received, *edge, *received;
   PetscMPIInt *destination;
@@ -228,7 +120,7 @@ static PetscErrorCode CollectConsents(Flipper *f)
     destination[count] = (PetscMPIInt)(f->claimed[t] % f->size);
     edge[count++] = f->claimed[t];
   }
-  PetscCall(SEND(f, count, edge, destination, &num_received, &received));
+  PetscCall(EqmExchangeBytes(f->comm, count, sizeof(*edge), destination, edge, &num_received, &received));
   for (PetscInt k = 0; k < num_received; k++) f->edge[received[k] / f->size].consents++;
   PetscCall(PetscFree(received));
   PetscCall(PetscFree2(edge, destination));
@@ -237,27 +129,27 @@ static PetscErrorCode CollectConsents(Flipper *f)
 
 /* The other diagonal of the two triangles, laid flat beside each other. Before: (p, q, r) and (s, r, q) with the edge
    q r; after: (p, q, s) and (s, r, p). */
-static void Flip(const Side *a, const Side *b, Triangle *first, Triangle *second)
+static void Flip(const EqmFlipSide *a, const EqmFlipSide *b, EqmFlipTriangle *first, EqmFlipTriangle *second)
 {
   const PetscInt i = a->corner, j = b->corner;
   const PetscInt i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-  const Triangle *const t = &a->shape, *const u = &b->shape;
+  const EqmFlipTriangle *const t = &a->shape, *const u = &b->shape;
   const PetscReal l = t->length[i];
   const PetscReal x = .5 * (l + (t->length[i2] - t->length[i1]) * (t->length[i2] + t->length[i1]) / l);
   const PetscReal y = .5 * (l + (u->length[j1] - u->length[j2]) * (u->length[j1] + u->length[j2]) / l);
   const PetscReal height = (2. * (EqmAreaOfLengths(t->length) + EqmAreaOfLengths(u->length))) / l;
   const PetscReal diagonal = PetscSqrtReal(PetscSqr(x - y) + PetscSqr(height));
 
-  *first = (Triangle){{t->vertex[i], t->vertex[i1], u->vertex[j]},
-                      {u->edge[j1], a->edge, t->edge[i2]},
-                      {u->length[j1], diagonal, t->length[i2]}};
-  *second = (Triangle){{u->vertex[j], t->vertex[i2], t->vertex[i]},
-                       {t->edge[i1], a->edge, u->edge[j2]},
-                       {t->length[i1], diagonal, u->length[j2]}};
+  *first = (EqmFlipTriangle){{t->vertex[i], t->vertex[i1], u->vertex[j]},
+                             {u->edge[j1], a->edge, t->edge[i2]},
+                             {u->length[j1], diagonal, t->length[i2]}};
+  *second = (EqmFlipTriangle){{u->vertex[j], t->vertex[i2], t->vertex[i]},
+                              {t->edge[i1], a->edge, u->edge[j2]},
+                              {t->length[i1], diagonal, u->length[j2]}};
 }
 
 /* Edges with both consents flip, and tell their triangles what has become of them. */
-static PetscErrorCode FlipEdges(Flipper *f)
+static PetscErrorCode FlipEdges(EqmFlipper *f)
 {
   PetscInt count = 0, num_received;
   PetscMPIInt *destination;
@@ -269,7 +161,7 @@ static PetscErrorCode FlipEdges(Flipper *f)
   PetscCall(PetscMalloc2(count, &update, count, &destination));
   count = 0;
   for (PetscInt e = 0; e < f->num_edges; e++) {
-    const Side *const side = f->edge[e].side;
+    const EqmFlipSide *const side = f->edge[e].side;
     if (f->edge[e].consents != 2) continue;
     for (PetscInt s = 0; s < 2; s++) {
       update[count + s].triangle = side[s].triangle;
@@ -279,7 +171,7 @@ static PetscErrorCode FlipEdges(Flipper *f)
     Flip(&side[0], &side[1], &update[count].shape, &update[count + 1].shape);
     count += 2;
   }
-  PetscCall(SEND(f, count, update, destination, &num_received, &received));
+  PetscCall(EqmExchangeBytes(f->comm, count, sizeof(*update), destination, update, &num_received, &received));
   for (PetscInt k = 0; k < num_received; k++) {
     f->triangle[received[k].triangle] = received[k].shape;
     f->changed[received[k].triangle] = PETSC_TRUE;
@@ -290,7 +182,7 @@ static PetscErrorCode FlipEdges(Flipper *f)
 }
 
 /* The soup with the triangles as they are now, and their lengths. */
-static PetscErrorCode TakeTriangles(const Flipper *f, EqmSoup soup, EqmSoup *flipped)
+static PetscErrorCode TakeTriangles(const EqmFlipper *f, EqmSoup soup, EqmSoup *flipped)
 {
   PetscFunctionBegin;
   PetscCall(EqmSoupCopy(soup, flipped));
@@ -305,15 +197,15 @@ static PetscErrorCode TakeTriangles(const Flipper *f, EqmSoup soup, EqmSoup *fli
 
 PetscErrorCode EqmSoupFlip(EqmSoup soup, EqmSoup *flipped, PetscInt64 *flips)
 {
-  Flipper f = {.comm = soup->comm, .num_triangles = soup->cell_end - soup->cell_start};
+  EqmFlipper f = {.comm = soup->comm, .num_triangles = soup->cell_end - soup->cell_start};
   PetscInt64 asking = 1;
 
   PetscFunctionBegin;
   PetscCheck(soup->cell_size == 3, soup->comm, PETSC_ERR_ARG_WRONG, "only edges of triangles are flipped");
   PetscCallMPI(MPI_Comm_rank(f.comm, &f.rank));
   PetscCallMPI(MPI_Comm_size(f.comm, &f.size));
-  PetscCall(MakeTriangles(soup, &f));
-  PetscCall(NameEdges(&f));
+  PetscCall(EqmFlipperMakeTriangles(soup, &f));
+  PetscCall(EqmFlipperNameEdges(&f));
   while (asking > 0) { /* ends: every flip lowers the Dirichlet energies of all functions */
     PetscCall(TellEdges(&f));
     PetscCall(AskTriangles(&f, &asking));

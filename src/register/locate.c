@@ -2,6 +2,7 @@
    outside all cells is asked again from every rank that could be closer. */
 #include "register/tree.h"
 #include "base/exchange.h"
+#include "base/rows.h"
 #include <math.h>
 
 /* A rank is known to the others by so many boxes. */
@@ -247,25 +248,11 @@ PetscErrorCode EqmLocationDestroy(EqmLocation *location)
   PetscFunctionReturn(0);
 }
 
-/* `width` values per owned cell to the points. */
-static PetscErrorCode Fetch(EqmLocation location, PetscInt width, const PetscReal *cells, PetscReal *points)
-{
-  MPI_Datatype type;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)width, MPIU_REAL, &type));
-  PetscCallMPI(MPI_Type_commit(&type));
-  PetscCall(PetscSFBcastBegin(location->cells, type, cells, points, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(location->cells, type, cells, points, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&type));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode EqmLocationSample(EqmLocation location, EqmMesh mesh, PetscInt width, const PetscReal *cells,
                                  PetscReal *points)
 {
   PetscFunctionBegin;
-  PetscCall(Fetch(location, width, cells, points));
+  PetscCall(EqmRowsToLeaves(location->cells, width, cells, points));
   PetscFunctionReturn(0);
 }
 
@@ -280,7 +267,7 @@ PetscErrorCode EqmLocationInterpolate(EqmLocation location, EqmMesh mesh, PetscI
   for (PetscInt k = 0; k < cs * mesh->num_owned_cells; k++) {
     for (PetscInt i = 0; i < width; i++) of_cells[width * k + i] = vertices[width * mesh->cells[k] + i];
   }
-  PetscCall(Fetch(location, cs * width, of_cells, fetched));
+  PetscCall(EqmRowsToLeaves(location->cells, cs * width, of_cells, fetched));
   for (PetscInt p = 0; p < location->num; p++) {
     for (PetscInt i = 0; i < width; i++) {
       PetscReal sum = 0.;

@@ -251,20 +251,15 @@ PetscErrorCode EqmLocationInOrigin(EqmOrigin o, EqmLocation location, PetscInt *
 {
   const PetscInt cs = location->cell_size, num = location->num;
   PetscReal *share;
-  MPI_Datatype square;
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(cell, location->cell, num));
   PetscCall(PetscArraycpy(barycentric, location->barycentric, cs * num));
   if (!o->parent) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(cs * cs * num, &share));
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)(cs * cs), MPIU_REAL, &square));
-  PetscCallMPI(MPI_Type_commit(&square));
   PetscCall(PetscSFBcastBegin(location->cells, MPIU_INT, o->parent, cell, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(location->cells, MPIU_INT, o->parent, cell, MPI_REPLACE));
-  PetscCall(PetscSFBcastBegin(location->cells, square, o->share, share, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(location->cells, square, o->share, share, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&square));
+  PetscCall(EqmRowsToLeaves(location->cells, cs * cs, o->share, share));
   for (PetscInt k = 0; k < cs * num; k++) {
     const PetscInt i = k / cs;
     barycentric[k] = 0.;
