@@ -219,7 +219,8 @@ def check_refused(program):
                        ("pair", "a,b\n3,4\n"), ("lonely", f"a,b\n{len(vertices)},3\n"), ("ragged", "a,b\n3,4\n5\n"), ("empty", "a,b\n"),
                        ("wide", "a,b,c,d,e\n1,2,3,4,5\n"), ("nowhere", "a,x,y,z\n3,nan,0,1\n"),
                        ("off", "a,x,y,z\n7,%r,%r,%r\n" % tuple((1.1 * point).tolist())), ("flat", "a,x,y\n3,.1,.2\n"),
-                       ("edge", f"a,b\n{edge},{numpy.setdiff1d(cells, boundary_edges(cells))[0]}\n"), ("few", "value\n1\n2\n"), ("text", "value\n" + "1\n" * (len(vertices) - 1) + "one\n")):
+                       ("edge", f"a,b\n{edge},{numpy.setdiff1d(cells, boundary_edges(cells))[0]}\n"), ("few", "value\n1\n2\n"),
+                       ("text", "value\n" + "1\n" * (len(vertices) - 1) + "one\n")):
         program.write(name + ".csv", text)
     both, closed = ("hills.obj", "hills.obj"), ("head.obj", "head.obj")
     landmarks = lambda name: ("-landmarks", name + ".csv")  # noqa: E731
