@@ -11,6 +11,7 @@ typedef struct {
   PetscInt count;
   PetscInt corner[EQM_MOST_CELL_DOFS]; /* whose each is */
   PetscReal direction[EQM_MOST_CELL_DOFS][3];
+  PetscBool is_plain; /* the coordinates of space themselves, corner by corner */
 } EqmCellFrame;
 
 /* None of these is collective. */

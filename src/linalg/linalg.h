@@ -103,6 +103,7 @@ struct _p_EqmLinear {
   void *context;
   PetscBool inexact;   /* an iteration may stop early */
   PetscReal tolerance; /* of an iteration: residual over right-hand side, if inexact in the energy norm */
+  PetscBool keeps_coarse_spaces;
   PetscInt num_fields;
   EqmEstimate estimate;
   void *data;
@@ -129,6 +130,9 @@ PETSC_INTERN PetscErrorCode EqmLinearTrySolve(EqmLinear linear, PetscInt num_rhs
                                               PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmLinearApply(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
 PETSC_INTERN PetscErrorCode EqmLinearSetInexact(EqmLinear linear, PetscReal tolerance);
+PETSC_INTERN PetscErrorCode EqmLinearSetExact(EqmLinear linear);
+PETSC_INTERN PetscErrorCode EqmLinearKeepCoarseSpaces(EqmLinear linear, PetscBool keep);
+PETSC_INTERN PetscBool EqmLinearHasCoarseSpaces(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count, const PetscReal *fields);
 
 /* The kinds fill in the operations. */

@@ -179,6 +179,15 @@ PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length)
   PetscFunctionReturn(0);
 }
 
+/* End what EqmLinearSetInexact has begun. For the factorisations to come. Not collective. */
+PetscErrorCode EqmLinearSetExact(EqmLinear linear)
+{
+  PetscFunctionBegin;
+  linear->inexact = PETSC_FALSE;
+  linear->tolerance = exact;
+  PetscFunctionReturn(0);
+}
+
 /* Collective. */
 PetscErrorCode EqmLinearDestroy(EqmLinear *linear)
 {

@@ -81,6 +81,21 @@ PetscErrorCode EqmLinearSetInexact(EqmLinear linear, PetscReal tolerance)
   PetscFunctionReturn(0);
 }
 
+/* Shall factorisations to come keep the coarse spaces of the last one? That is far cheaper, and as good where matrices
+   change little; but then results depend on the matrices before. Exact factors have none. Not collective. */
+PetscErrorCode EqmLinearKeepCoarseSpaces(EqmLinear linear, PetscBool keep)
+{
+  PetscFunctionBegin;
+  linear->keeps_coarse_spaces = keep;
+  PetscFunctionReturn(0);
+}
+
+/* Not collective. */
+PetscBool EqmLinearHasCoarseSpaces(EqmLinear linear)
+{
+  return (PetscBool)(linear->kind == EQM_SOLVER_MULTIGRID);
+}
+
 /* Fields that the matrix hardly sees, columns of this rank's unknowns: coarse grids then hold them. For the
    factorisations to come; exact factors need none. Collective. */
 PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count, const PetscReal *fields)

@@ -28,11 +28,12 @@ static void PaddedCell(void *context, PetscInt cell, PetscReal *matrix)
   PetscReal given[EQM_MOST_CELL_UNKNOWNS * EQM_MOST_CELL_UNKNOWNS], largest = PETSC_SMALL;
   PetscInt row[EQM_MOST_CELL_UNKNOWNS], n = 0;
 
-  linear->cell_matrix(linear->context, cell, given);
   for (PetscInt a = 0; a < mesh->cell_size; a++) {
     const PetscInt v = mesh->cells[mesh->cell_size * cell + a];
     for (PetscInt k = 0; k < linear->unknowns.count[v]; k++) row[n++] = g->block * a + k;
   }
+  linear->cell_matrix(linear->context, cell, n == size ? matrix : given);
+  if (n == size) return;
   for (PetscInt i = 0; i < n; i++) largest = PetscMax(largest, given[(n + 1) * i]);
   for (PetscInt k = 0; k < size * size; k++) matrix[k] = k % (size + 1) == 0 ? padding * largest : 0.;
   for (PetscInt i = 0; i < n; i++) {
@@ -139,7 +140,63 @@ static PetscErrorCode SetFields(EqmLinear linear, PetscInt count, const PetscRea
   PetscFunctionReturn(0);
 }
 
-/* New hierarchy. Only the iteration can find that a matrix is not definite; what cannot be set up is not. */
+/* Smoothers are symmetric Gauss-Seidel sweeps, which are safe for every definite matrix; Chebyshev's are not where the
+   estimate of the spectrum fails. A second sweep costs more than it saves. The shift, far below every entry, is for
+   coarse rows of aggregates that are too small for all the fields. The options database may say otherwise. */
+static PetscErrorCode SetSmootherOptions(void)
+{
+  static const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "richardson"},
+                                            {"-multigrid_mg_levels_ksp_max_it", "1"},
+                                            {"-multigrid_mg_levels_pc_type", "sor"},
+                                            {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"}};
+
+  PetscFunctionBegin;
+  for (size_t k = 0; k < sizeof(defaults) / sizeof(defaults[0]); k++) {
+    PetscBool given;
+    PetscCall(PetscOptionsHasName(NULL, NULL, defaults[k][0], &given));
+    if (!given) PetscCall(PetscOptionsSetValue(NULL, defaults[k][0], defaults[k][1]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A new iteration: PETSc's remembers fields and more of the first matrix that it has seen, and what is factored must
+   not depend on what was before. */
+static PetscErrorCode MakeIteration(EqmLinear linear)
+{
+  Multigrid *const g = linear->data;
+  PC pc;
+
+  PetscFunctionBegin;
+  PetscCall(KSPDestroy(&g->ksp));
+  PetscCall(KSPCreate(linear->mesh->comm, &g->ksp));
+  PetscCall(KSPSetType(g->ksp, KSPCG));
+  PetscCall(KSPSetTolerances(g->ksp, linear->tolerance, PETSC_DEFAULT, PETSC_DEFAULT, 2000));
+  PetscCall(KSPGetPC(g->ksp, &pc));
+  PetscCall(PCSetType(pc, PCGAMG));
+  PetscCall(SetSmootherOptions());
+  PetscCall(KSPSetOptionsPrefix(g->ksp, "multigrid_"));
+  PetscCall(KSPSetFromOptions(g->ksp));
+  PetscFunctionReturn(0);
+}
+
+/* On several ranks, coarse matrices as sums in an order that does not depend on whose message comes first, as it does
+   in PETSc's own choice of product. */
+static PetscErrorCode SetUpInOrder(KSP ksp, PetscMPIInt size)
+{
+  static const char *const name = "-matptap_via";
+  PetscBool mine;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, NULL, name, &mine));
+  mine = (PetscBool)(!mine && size > 1);
+  if (mine) PetscCall(PetscOptionsSetValue(NULL, name, "allatonce"));
+  PetscCall(KSPSetUp(ksp));
+  if (mine) PetscCall(PetscOptionsClearValue(NULL, name));
+  PetscFunctionReturn(0);
+}
+
+/* New matrices on all levels. Only the iteration can find that a matrix is not definite; what cannot be set up is not.
+ */
 static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
 {
   Multigrid *const g = linear->data;
@@ -149,6 +206,7 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PC pc;
 
   PetscFunctionBegin;
+  if (!linear->keeps_coarse_spaces || !g->ksp) PetscCall(MakeIteration(linear));
   PetscCall(EqmAssemblyGetMat(linear->assembly, &matrix));
   PetscCall(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
   if (linear->num_fields > 0) {
@@ -159,8 +217,9 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscCall(KSPSetNormType(g->ksp, linear->inexact ? KSP_NORM_NATURAL : KSP_NORM_UNPRECONDITIONED));
   PetscCall(KSPSetTolerances(g->ksp, linear->tolerance, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscCall(KSPSetOperators(g->ksp, matrix, matrix));
-  PetscCall(KSPSetUp(g->ksp));
   PetscCall(KSPGetPC(g->ksp, &pc));
+  PetscCall(PCGAMGSetReuseInterpolation(pc, linear->keeps_coarse_spaces));
+  PetscCall(SetUpInOrder(g->ksp, linear->mesh->size));
   PetscCall(PCGetFailedReason(pc, &failed));
   *success = (PetscBool)(failed == PC_NOERROR);
   PetscFunctionReturn(0);
@@ -217,30 +276,10 @@ static PetscErrorCode Destroy(EqmLinear linear)
   PetscFunctionReturn(0);
 }
 
-/* Smoothers are symmetric Gauss-Seidel sweeps, which are safe for every definite matrix; Chebyshev's are not where the
-   estimate of the spectrum fails. A second sweep costs more than it saves. The shift, far below every entry, is for
-   coarse rows of aggregates that are too small for all the fields. The options database may say otherwise. */
-static PetscErrorCode SetSmootherOptions(void)
-{
-  static const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "richardson"},
-                                            {"-multigrid_mg_levels_ksp_max_it", "1"},
-                                            {"-multigrid_mg_levels_pc_type", "sor"},
-                                            {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"}};
-
-  PetscFunctionBegin;
-  for (size_t k = 0; k < sizeof(defaults) / sizeof(defaults[0]); k++) {
-    PetscBool given;
-    PetscCall(PetscOptionsHasName(NULL, NULL, defaults[k][0], &given));
-    if (!given) PetscCall(PetscOptionsSetValue(NULL, defaults[k][0], defaults[k][1]));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Make `linear` a multigrid-preconditioned iteration; options with the prefix -multigrid_. Collective. */
 PetscErrorCode EqmLinearSetUpMultigrid(EqmLinear linear)
 {
   Multigrid *g;
-  PC pc;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&g));
@@ -252,14 +291,5 @@ PetscErrorCode EqmLinearSetUpMultigrid(EqmLinear linear)
   linear->apply = Apply;
   linear->destroy = Destroy;
   PetscCall(MakeRows(linear));
-  PetscCall(KSPCreate(linear->mesh->comm, &g->ksp));
-  PetscCall(KSPSetType(g->ksp, KSPCG));
-  PetscCall(KSPSetTolerances(g->ksp, linear->tolerance, PETSC_DEFAULT, PETSC_DEFAULT, 2000));
-  PetscCall(KSPGetPC(g->ksp, &pc));
-  PetscCall(PCSetType(pc, PCGAMG));
-  PetscCall(PCGAMGSetReuseInterpolation(pc, PETSC_FALSE)); /* it follows the matrix */
-  PetscCall(SetSmootherOptions());
-  PetscCall(KSPSetOptionsPrefix(g->ksp, "multigrid_"));
-  PetscCall(KSPSetFromOptions(g->ksp));
   PetscFunctionReturn(0);
 }

@@ -166,6 +166,10 @@ PETSC_INTERN PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weig
 /* The same once EqmGroupFactor has factored these weights and groups. Collective. */
 PETSC_INTERN PetscErrorCode EqmHeldExtend(EqmSolver solver, const PetscReal *weights, const signed char *group,
                                           PetscInt width, PetscReal *z);
+/* Bring z nearer to that solution, from the values that it has: where the solver is an iteration, until the error is
+   down to `tolerance` of what it was (energy norm); an exact factor solves. Factors. Collective. */
+PETSC_INTERN PetscErrorCode EqmHeldImprove(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                                           PetscInt width, PetscReal tolerance, PetscReal *z);
 /* Planar: coordinates that are free of constraint solve L x = 0 with all others held: the discrete harmonic map for
    `weights`. `to` gets the result; ghosts up to date. Collective. */
 PETSC_INTERN PetscErrorCode EqmHarmonicMap(EqmSolver solver, const PetscReal *weights, const EqmPlace *from,

@@ -11,7 +11,9 @@
 struct _p_EqmMetric {
   PetscReal *weights;
   EqmPlace at;            /* the map that the present factor belongs to */
-  EqmLinear gauss_newton; /* in the ball, with vertices in frames; else NULL, and there is a Laplacian: */
+  EqmLinear gauss_newton; /* in the ball, with vertices in frames; else NULL, and there is a Laplacian, below */
+  EqmPlace coarse_at;     /* the map that the coarse spaces of multigrid belong to, and whether they serve on */
+  PetscBool keeps_coarse;
   PetscReal *mass, *columns, *ambient;
   signed char *group;
 };
@@ -46,10 +48,12 @@ PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
   PetscCall(PetscNew(&metric));
   PetscCall(PetscMalloc1(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &metric->weights));
   PetscCall(EqmPlaceCreate(solver->domain, &metric->at));
-  if (NeedsGaussNewton(solver->domain))
+  if (NeedsGaussNewton(solver->domain)) {
+    PetscCall(EqmPlaceCreate(solver->domain, &metric->coarse_at));
     PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_METRIC, &metric->gauss_newton));
-  else
+  } else {
     PetscCall(MakeRoomForLaplacian(solver, metric));
+  }
   *out = metric;
   PetscFunctionReturn(0);
 }
@@ -59,6 +63,7 @@ PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
   PetscFunctionBegin;
   if (!*metric) PetscFunctionReturn(0);
   PetscCall(EqmPlaceDestroy(&(*metric)->at));
+  PetscCall(EqmPlaceDestroy(&(*metric)->coarse_at));
   PetscCall(PetscFree((*metric)->weights));
   PetscCall(PetscFree4((*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
   PetscCall(EqmLinearDestroy(&(*metric)->gauss_newton));
@@ -107,6 +112,7 @@ static PetscErrorCode FactorGaussNewton(EqmSolver solver, EqmMetric metric)
   PetscBool success;
 
   PetscFunctionBegin;
+  PetscCall(EqmLinearKeepCoarseSpaces(metric->gauss_newton, metric->keeps_coarse));
   PetscCall(EqmSolverSetFields(solver, &solver->place, metric->gauss_newton, 3, Translation));
   PetscCall(EqmLinearFactor(metric->gauss_newton, CellGaussNewton, &gn, 1., &success));
   PetscCheck(success, solver->comm, PETSC_ERR_MAT_CH_ZRPVT, "no factor of the metric: the map is not finite");
@@ -130,24 +136,39 @@ static PetscErrorCode Factor(EqmSolver solver, EqmMetric metric)
   PetscFunctionReturn(0);
 }
 
+/* The barrier's matrices change too much for common coarse spaces. */
+static PetscErrorCode FactorAt(EqmSolver solver, EqmMetric metric, const EqmPlace *place)
+{
+  const EqmPlace present = solver->place;
+
+  PetscFunctionBegin;
+  solver->place = *place; /* for as long as it takes to factor what belongs there */
+  PetscCall(Factor(solver, metric));
+  solver->place = present;
+  metric->keeps_coarse = (PetscBool)(metric->gauss_newton && !solver->barrier);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmMetricRefresh(EqmSolver solver, EqmMetric metric)
 {
   PetscFunctionBegin;
   PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &metric->at));
-  PetscCall(Factor(solver, metric));
+  if (metric->gauss_newton && !metric->keeps_coarse)
+    PetscCall(EqmPlaceCopy(solver->domain, &metric->at, &metric->coarse_at));
+  PetscCall(FactorAt(solver, metric, &metric->at));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmMetricState(EqmSolver solver, EqmMetric metric, EqmState state)
 {
-  const EqmPlace present = solver->place;
-
   PetscFunctionBegin;
   PetscCall(EqmStatePlace(state, solver->domain, "metric_of", &metric->at));
+  if (metric->gauss_newton) PetscCall(EqmStatePlace(state, solver->domain, "coarse_spaces_of", &metric->coarse_at));
   if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
-  solver->place = metric->at; /* for as long as it takes to factor again what was factored there */
-  PetscCall(Factor(solver, metric));
-  solver->place = present;
+  metric->keeps_coarse = PETSC_FALSE;
+  if (metric->gauss_newton && EqmLinearHasCoarseSpaces(metric->gauss_newton))
+    PetscCall(FactorAt(solver, metric, &metric->coarse_at));
+  PetscCall(FactorAt(solver, metric, &metric->at));
   PetscFunctionReturn(0);
 }
 

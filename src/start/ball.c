@@ -176,24 +176,28 @@ static PetscErrorCode TurnMirrored(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* Error that each solve leaves of the one that it finds, where the solver is an iteration. */
+static const PetscReal start_tolerance = 1e-3;
+
 PetscErrorCode EqmBallStart(EqmSolver solver, PetscInt steps)
 {
-  EqmPlace to;
+  const EqmMesh mesh = solver->mesh;
+  signed char *group;
   PetscReal *weights;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(6 * solver->mesh->num_local_cells, &weights));
-  PetscCall(EqmPlaceCreate(solver->domain, &to));
+  PetscCall(PetscMalloc2(6 * mesh->num_local_cells, &weights, mesh->num_local, &group));
+  for (PetscInt v = 0; v < mesh->num_local; v++) group[v] = mesh->on_boundary[v] ? EQM_GROUP_FIXED : 0;
   PetscCall(PlaceMesh(solver, &solver->place));
   /* L_V of the mesh's own places is the Laplacian of the Dirichlet energy: the first step is the harmonic map */
   for (PetscInt k = 0; k <= steps; k++) {
     PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
     if (k == 0) PetscCall(PlaceBoundary(solver, &solver->place));
-    PetscCall(EqmHarmonicMap(solver, weights, &solver->place, &to));
-    PetscCall(EqmPlaceCopy(solver->domain, &to, &solver->place));
+    PetscCall(EqmHeldImprove(solver, weights, group, 3, start_tolerance, solver->place.x));
     if (k == 0) PetscCall(TurnMirrored(solver));
+    PetscCall(EqmLinearKeepCoarseSpaces(solver->scalar, (PetscBool)(k > 0))); /* from image to image little changes */
   }
-  PetscCall(EqmPlaceDestroy(&to));
-  PetscCall(PetscFree(weights));
+  PetscCall(EqmLinearKeepCoarseSpaces(solver->scalar, PETSC_FALSE));
+  PetscCall(PetscFree2(weights, group));
   PetscFunctionReturn(0);
 }

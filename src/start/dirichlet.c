@@ -109,6 +109,32 @@ PetscErrorCode EqmHeldExtend(EqmSolver solver, const PetscReal *weights, const s
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmHeldImprove(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
+                              PetscReal tolerance, PetscReal *z)
+{
+  const EqmMesh mesh = solver->mesh;
+  const PetscInt n = mesh->num_owned;
+  PetscReal *pull, *columns;
+
+  PetscFunctionBegin;
+  PetscCall(MakeScalar(solver));
+  PetscCall(EqmLinearSetInexact(solver->scalar, tolerance));
+  PetscCall(EqmGroupFactor(solver, weights, group, NULL));
+  PetscCall(PetscMalloc2(width * n, &pull, width * n, &columns));
+  PetscCall(EqmLaplacianApply(mesh, weights, width, z, pull));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < width; k++) columns[k * n + v] = group[v] == EQM_GROUP_FIXED ? 0. : -pull[width * v + k];
+  }
+  PetscCall(EqmGroupSolve(solver, width, columns));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < width && group[v] != EQM_GROUP_FIXED; k++) z[width * v + k] += columns[k * n + v];
+  }
+  PetscCall(PetscFree2(pull, columns));
+  PetscCall(EqmMeshUpdateGhosts(mesh, width, z));
+  PetscCall(EqmLinearSetExact(solver->scalar));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmHeldSolve(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
                             PetscReal *z)
 {

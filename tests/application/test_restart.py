@@ -152,11 +152,12 @@ def methods_of(program, command):
 
 def check_methods(program):
     """Every method of every command goes on to the last bit; on several ranks, one of each kind."""
+    coarse = ("ball", "blob.msh", "lbfgs", "-linear_solver", "multigrid", "-lbfgs_refresh", 2)  # coarse spaces older than the metric
     some = (("disk", "hills.obj", "rgd"), ("disk", "hills.obj", "lm"), ("sphere", "head.obj", "lbfgs"), ("ball", "blob.msh", "newton"),
-            ("ball", "blob.msh", "ncg"))
+            ("ball", "blob.msh", "ncg"), coarse)
     every = [(command, mesh, method) for command, mesh in MESHES for method in methods_of(program, command)]
     every += [("disk", "hills.obj", "ncg", "-ncg_refresh", 2), ("disk", "hills.obj", "lm", "-balance", .02),
-              ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang")]
+              ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang"), coarse]
     for command, mesh, method, *options in every if program.ranks == 1 else some:
         run = (command, mesh, "-method", method, *options, *ENDLESS)
         start = program.run(*run, "-max_it", 0, "-checkpoint", "start.ck", *outputs("start"))
