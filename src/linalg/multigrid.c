@@ -188,8 +188,8 @@ static PetscErrorCode SetUpInOrder(KSP ksp, PetscMPIInt size)
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsHasName(NULL, NULL, name, &mine));
-  mine = (PetscBool)(!mine && size > 1);
-  if (mine) PetscCall(PetscOptionsSetValue(NULL, name, "allatonce"));
+  mine = (PetscBool)(!mine && size > 2);
+  if (mine) PetscCall(PetscOptionsSetValue(NULL, name, "backend"));
   PetscCall(KSPSetUp(ksp));
   if (mine) PetscCall(PetscOptionsClearValue(NULL, name));
   PetscFunctionReturn(0);
