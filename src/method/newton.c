@@ -89,8 +89,9 @@ static PetscErrorCode Linearise(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* (H + mu M) p = -g; what the quadratic model without the damping promises. */
-static PetscErrorCode SolveStep(EqmSolver solver, PetscReal *promised)
+/* (H + mu M) p = -g; what the quadratic model without the damping promises. An iteration finds only here that a matrix
+   is not definite. */
+static PetscErrorCode SolveStep(EqmSolver solver, PetscReal *promised, PetscBool *success)
 {
   Newton *const newton = solver->data;
   PetscReal slope, metric;
@@ -100,8 +101,9 @@ static PetscErrorCode SolveStep(EqmSolver solver, PetscReal *promised)
   PetscCall(VecCopy(newton->gradient, newton->step));
   PetscCall(VecScale(newton->step, -1.));
   PetscCall(VecGetArray(newton->step, &p));
-  PetscCall(EqmLinearSolve(newton->linear, 1, p, p));
+  PetscCall(EqmLinearTrySolve(newton->linear, 1, p, p, success));
   PetscCall(VecRestoreArray(newton->step, &p));
+  if (!*success) PetscFunctionReturn(0);
   PetscCall(VecDot(newton->gradient, newton->step, &slope));
   PetscCall(EqmDomainExpand(solver->domain, &solver->place, newton->step, newton->velocity));
   PetscCall(EqmLaplacianEnergy(solver->mesh, newton->weights, solver->domain->dim, newton->velocity, &metric));
@@ -134,8 +136,8 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   for (PetscInt damping = 0; damping < MOST_DAMPINGS; damping++, newton->mu = PetscMax(4. * newton->mu, 1e-10)) {
     PetscBool success;
     PetscCall(EqmLinearFactor(newton->linear, CellMatrix, solver, 1., &success));
+    if (success) PetscCall(SolveStep(solver, &promised, &success));
     if (!success) continue;
-    PetscCall(SolveStep(solver, &promised));
     if (promised <= 1e-13 * solver->objective) { /* what is left is rounding */
       *outcome = EQM_STEP_CONVERGED;
       PetscFunctionReturn(0);
