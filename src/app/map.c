@@ -229,7 +229,7 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckArguments(line, &options));
-  EqmStopCatchSignals();
+  PetscCall(EqmStopCatchSignals(PETSC_COMM_WORLD));
   if (options.has_checkpoint) PetscCall(EqmStopWatchFile(PETSC_COMM_WORLD, options.checkpoint, &options.stop_file));
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   PetscCall(EqmIntakeRead(PETSC_COMM_WORLD, &options.input, ledger, &input));

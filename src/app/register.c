@@ -122,7 +122,7 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckArguments(line, &options));
-  EqmStopCatchSignals();
+  PetscCall(EqmStopCatchSignals(PETSC_COMM_WORLD));
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   PetscCall(EqmRegistrationCreate(PETSC_COMM_WORLD, ledger, &registration));
   PetscCall(EqmRegistrationSetFromOptions(registration));

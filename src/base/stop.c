@@ -13,17 +13,21 @@ static void Note(int signal_number)
   caught = signal_number == SIGTERM ? EQM_STOP_TERM : EQM_STOP_USR1;
 }
 
-/* Batch systems send TERM more than once (to the launcher and to the ranks): every one of them is only noted. */
-void EqmStopCatchSignals(void)
+/* Batch systems send TERM more than once (to the launcher and to the ranks): every one of them is only noted. Whoever
+   sees one rank at work may send a signal to all. */
+PetscErrorCode EqmStopCatchSignals(MPI_Comm comm)
 {
   struct sigaction action;
 
+  PetscFunctionBegin;
   memset(&action, 0, sizeof(action));
   action.sa_handler = Note;
   action.sa_flags = SA_RESTART;
   (void)sigemptyset(&action.sa_mask);
   (void)sigaction(SIGUSR1, &action, NULL);
   (void)sigaction(SIGTERM, &action, NULL);
+  PetscCallMPI(MPI_Barrier(comm));
+  PetscFunctionReturn(0);
 }
 
 static void Stamp(const char *name, long long stamp[3])

@@ -7,8 +7,8 @@
 /* Where a request came from; the larger number is told where there are several. */
 typedef enum { EQM_STOP_NONE, EQM_STOP_USR1, EQM_STOP_TERM, EQM_STOP_FILE } EqmStopReason;
 
-/* From here on SIGUSR1 and SIGTERM are noted instead of ending the process. Not collective. */
-PETSC_INTERN void EqmStopCatchSignals(void);
+/* From here on SIGUSR1 and SIGTERM are noted on every rank instead of ending the processes. Collective. */
+PETSC_INTERN PetscErrorCode EqmStopCatchSignals(MPI_Comm comm);
 
 /* Watch for a file called STOP in the folder of `file`. One that is there already does not count until it is touched.
    Collective in spirit: rank 0 looks. */
