@@ -179,8 +179,8 @@ static PetscErrorCode MakeIteration(EqmLinear linear)
   PetscFunctionReturn(0);
 }
 
-/* On several ranks, coarse matrices as sums in an order that does not depend on whose message comes first, as it does
-   in PETSc's own choice of product. */
+/* From three ranks on, coarse matrices as sums in an order that does not depend on whose message comes first, as it
+   does in PETSc's own choice of product, which is faster. */
 static PetscErrorCode SetUpInOrder(KSP ksp, PetscMPIInt size)
 {
   static const char *const name = "-matptap_via";

@@ -84,42 +84,15 @@ static PetscBool CoordinateIsFree(EqmVertexKind kind, PetscInt c)
                      (kind == EQM_VERTEX_SIDE_Y && c == 1));
 }
 
-PetscErrorCode EqmHeldExtend(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
-                             PetscReal *z)
-{
-  const EqmMesh mesh = solver->mesh;
-  const PetscInt n = mesh->num_owned;
-  PetscReal *held, *pull, *columns;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc3(width * mesh->num_local, &held, width * n, &pull, width * n, &columns));
-  for (PetscInt v = 0; v < mesh->num_local; v++) {
-    for (PetscInt k = 0; k < width; k++) held[width * v + k] = group[v] == EQM_GROUP_FIXED ? z[width * v + k] : 0.;
-  }
-  PetscCall(EqmLaplacianApply(mesh, weights, width, held, pull));
-  for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt k = 0; k < width; k++) columns[k * n + v] = group[v] == EQM_GROUP_FIXED ? 0. : -pull[width * v + k];
-  }
-  PetscCall(EqmGroupSolve(solver, width, columns));
-  for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt k = 0; k < width && group[v] != EQM_GROUP_FIXED; k++) z[width * v + k] = columns[k * n + v];
-  }
-  PetscCall(PetscFree3(held, pull, columns));
-  PetscCall(EqmMeshUpdateGhosts(mesh, width, z));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmHeldImprove(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
-                              PetscReal tolerance, PetscReal *z)
+/* Add to z, where it is not held, the solution of L d = -L z with what is factored. */
+static PetscErrorCode AddCorrection(EqmSolver solver, const PetscReal *weights, const signed char *group,
+                                    PetscInt width, PetscReal *z)
 {
   const EqmMesh mesh = solver->mesh;
   const PetscInt n = mesh->num_owned;
   PetscReal *pull, *columns;
 
   PetscFunctionBegin;
-  PetscCall(MakeScalar(solver));
-  PetscCall(EqmLinearSetInexact(solver->scalar, tolerance));
-  PetscCall(EqmGroupFactor(solver, weights, group, NULL));
   PetscCall(PetscMalloc2(width * n, &pull, width * n, &columns));
   PetscCall(EqmLaplacianApply(mesh, weights, width, z, pull));
   for (PetscInt v = 0; v < n; v++) {
@@ -131,6 +104,28 @@ PetscErrorCode EqmHeldImprove(EqmSolver solver, const PetscReal *weights, const 
   }
   PetscCall(PetscFree2(pull, columns));
   PetscCall(EqmMeshUpdateGhosts(mesh, width, z));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHeldExtend(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
+                             PetscReal *z)
+{
+  PetscFunctionBegin;
+  for (PetscInt v = 0; v < solver->mesh->num_local; v++) {
+    for (PetscInt k = 0; k < width && group[v] != EQM_GROUP_FIXED; k++) z[width * v + k] = 0.;
+  }
+  PetscCall(AddCorrection(solver, weights, group, width, z));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHeldImprove(EqmSolver solver, const PetscReal *weights, const signed char *group, PetscInt width,
+                              PetscReal tolerance, PetscReal *z)
+{
+  PetscFunctionBegin;
+  PetscCall(MakeScalar(solver));
+  PetscCall(EqmLinearSetInexact(solver->scalar, tolerance));
+  PetscCall(EqmGroupFactor(solver, weights, group, NULL));
+  PetscCall(AddCorrection(solver, weights, group, width, z));
   PetscCall(EqmLinearSetExact(solver->scalar));
   PetscFunctionReturn(0);
 }
