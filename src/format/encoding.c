@@ -113,7 +113,7 @@ PetscBool EqmInflate(const char *packed, size_t length, char *bytes, size_t num_
 }
 
 /* EqmInflatePlausible - can a zlib stream of this length hold so many bytes? Deflate packs 1032 to 1 at best. To be
-   asked before memory is taken for what a header claims. Not collective. */
+   checked before memory is allocated for what a header announces. Not collective. */
 PetscBool EqmInflatePlausible(size_t packed_length, size_t num_bytes)
 {
   return num_bytes / 1032 <= packed_length ? PETSC_TRUE : PETSC_FALSE;

@@ -1,42 +1,33 @@
-/* The table of mesh formats, and what is looked up in it. */
+/* The list of mesh formats, and searches in it. */
 #include "format.h"
+#include "formats.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-/* The order is that of recognition: formats that say clearly what they are come first. */
-static const EqmFormat formats[] = {
-    {"HDF5", "h5 hdf5", EqmRecogniseHdf5, NULL, NULL, EqmSoupReadHdf5, EqmSoupWriteHdf5, NULL},
-    {"PLY", "ply", EqmRecognisePly, EqmParsePly, EqmWritePly, NULL, NULL, NULL},
-    {"VTU", "vtu", EqmRecogniseVtu, EqmParseVtu, EqmWriteVtu, NULL, NULL, NULL},
-    {"VTP", "vtp", EqmRecogniseVtu, EqmParseVtu, NULL, NULL, NULL, NULL},
-    {"GIFTI", "gii", EqmRecogniseGifti, EqmParseGifti, EqmWriteGifti, NULL, NULL, NULL},
-    {"legacy VTK", "vtk", EqmRecogniseVtk, EqmParseVtk, EqmWriteVtk, NULL, NULL, NULL},
-    {"Gmsh MSH", "msh", EqmRecogniseGmsh, EqmParseGmsh, EqmWriteGmsh, NULL, NULL, NULL},
-    {"Medit mesh", "mesh", EqmRecogniseMedit, EqmParseMedit, EqmWriteMedit, NULL, NULL, NULL},
-    {"Medit meshb", "meshb", EqmRecogniseMeshb, EqmParseMeshb, EqmWriteMeshb, NULL, NULL, NULL},
-    {"OFF", "off coff noff", EqmRecogniseOff, EqmParseOff, EqmWriteOff, NULL, NULL, NULL},
-    {"STL", "stl", EqmRecogniseStl, EqmParseStl, EqmWriteStl, NULL, NULL, NULL},
-    {"TetGen", "node ele", EqmRecogniseTetgen, EqmParseTetgen, EqmWriteTetgen, NULL, NULL, EqmLoadTetgen},
-    {"OBJ", "obj", EqmRecogniseObj, EqmParseObj, EqmWriteObj, NULL, NULL, NULL},
-};
+#define DECLARE(id) PETSC_INTERN const EqmFormat EqmFormat##id;
+#define ADDRESS(id) &EqmFormat##id,
 
-#define NUM_FORMATS (sizeof(formats) / sizeof(formats[0]))
+EQM_FORMAT_LIST(DECLARE)
 
-/* EqmFormatAt - a row of the table, or NULL behind its end. Not collective. */
-const EqmFormat *EqmFormatAt(PetscInt row)
+static const EqmFormat *const formats[] = {EQM_FORMAT_LIST(ADDRESS)};
+
+enum { NUM_FORMATS = sizeof(formats) / sizeof(formats[0]) };
+
+/* EqmFormatAt - a row of the list, or NULL outside it. Not collective. */
+const EqmFormat *EqmFormatAt(int row)
 {
-  return row >= 0 && (size_t)row < NUM_FORMATS ? &formats[row] : NULL;
+  return row >= 0 && row < NUM_FORMATS ? formats[row] : NULL;
 }
 
-/* EqmFormatOfContent - the format that a file's bytes show, or NULL. Not collective. */
-const EqmFormat *EqmFormatOfContent(const char *bytes, size_t length)
+/* EqmFormatRowOfContent - the format that a file's first bytes show; -1: none. Not collective. */
+int EqmFormatRowOfContent(const char *bytes, size_t length)
 {
-  for (size_t i = 0; i < NUM_FORMATS; ++i) {
-    if (formats[i].recognise(bytes, length)) return &formats[i];
+  for (int i = 0; i < NUM_FORMATS; ++i) {
+    if (formats[i]->recognise && formats[i]->recognise(bytes, length)) return i;
   }
-  return NULL;
+  return -1;
 }
 
 /* Is `suffix` one of the words of `list`, in upper or lower case? */
@@ -48,16 +39,28 @@ static PetscBool IsListed(const char *list, const char *suffix, size_t length)
   return PETSC_FALSE;
 }
 
-/* EqmFormatOfSuffix - the format that a file's name shows, or NULL. Not collective. */
-const EqmFormat *EqmFormatOfSuffix(const char *file)
+/* EqmFormatRowOfSuffix - the format that a file's name shows; -1: none. Not collective. */
+int EqmFormatRowOfSuffix(const char *file)
 {
   const char *dot = strrchr(file, '.');
 
-  if (!dot || strchr(dot, '/')) return NULL;
-  for (size_t i = 0; i < NUM_FORMATS; ++i) {
-    if (IsListed(formats[i].suffixes, dot + 1, strlen(dot + 1))) return &formats[i];
+  if (!dot || strchr(dot, '/')) return -1;
+  for (int i = 0; i < NUM_FORMATS; ++i) {
+    if (IsListed(formats[i]->suffixes, dot + 1, strlen(dot + 1))) return i;
   }
-  return NULL;
+  return -1;
+}
+
+/* EqmFormatOfContent - the format that a file's first bytes show, or NULL. Not collective. */
+const EqmFormat *EqmFormatOfContent(const char *bytes, size_t length)
+{
+  return EqmFormatAt(EqmFormatRowOfContent(bytes, length));
+}
+
+/* EqmFormatOfSuffix - the format that a file's name shows, or NULL. Not collective. */
+const EqmFormat *EqmFormatOfSuffix(const char *file)
+{
+  return EqmFormatAt(EqmFormatRowOfSuffix(file));
 }
 
 /* EqmFormatListSuffixes - ".ply .vtu ..." of the formats that can be written, or read, for messages. Not collective. */
@@ -66,32 +69,14 @@ void EqmFormatListSuffixes(PetscBool writable, char *text, size_t length)
   size_t used = 0;
 
   if (length) text[0] = '\0';
-  for (size_t i = 0; i < NUM_FORMATS; ++i) {
+  for (int i = 0; i < NUM_FORMATS; ++i) {
     const PetscBool can =
-        writable ? formats[i].write || formats[i].write_parallel : formats[i].parse || formats[i].read_parallel;
+        writable ? formats[i]->write || formats[i]->write_parallel : formats[i]->parse || formats[i]->read_parallel;
     const size_t left = used < length ? length - used : 0;
 
     if (can)
-      used += (size_t)snprintf(text + used, left, "%s.%.*s", used ? " " : "", (int)strcspn(formats[i].suffixes, " "),
-                               formats[i].suffixes);
+      used += (size_t)snprintf(text + used, left, "%s.%.*s", used ? " " : "", (int)strcspn(formats[i]->suffixes, " "),
+                               formats[i]->suffixes);
     if (used >= length) return;
   }
-}
-
-/* EqmRequireSmall - refuse a mesh that a format with 32-bit numbers cannot count. Not collective. Errors: EQM_ERR_USAGE
-   (quiet, reason in `error`). */
-PetscErrorCode EqmRequireSmall(const EqmSerialMesh *mesh, const char *format, char *error, size_t length)
-{
-  if ((PetscInt64)mesh->num_vertices < INT32_MAX && (PetscInt64)mesh->num_cells < INT32_MAX) return 0;
-  snprintf(error, length, "%s files cannot count that many vertices or cells; choose .h5", format);
-  return EQM_ERR_USAGE;
-}
-
-/* EqmRequireTriangles - refuse a mesh that a surface format cannot hold. Not collective. Errors: EQM_ERR_USAGE (quiet,
-   reason in `error`). */
-PetscErrorCode EqmRequireTriangles(const EqmSerialMesh *mesh, const char *format, char *error, size_t length)
-{
-  if (mesh->cell_size == 3) return EqmRequireSmall(mesh, format, error, length);
-  snprintf(error, length, "%s files cannot hold tetrahedra; choose .h5, .vtu, .msh or .mesh", format);
-  return EQM_ERR_USAGE;
 }

@@ -1,5 +1,5 @@
-/* Mesh formats behind one table. A new format is one file with a parser, a writer or both, a line below and a row in
-   format.c. */
+/* Mesh formats in one list. A new format is one file, with a parser, a writer or both and a row that names them
+   (EQM_DEFINE_FORMAT), and one line in formats.h. */
 #ifndef EQM_FORMAT_H
 #define EQM_FORMAT_H
 
@@ -40,53 +40,30 @@ typedef struct {
   EqmLoader load;                                           /* NULL: a mesh is one file */
 } EqmFormat;
 
-PETSC_INTERN const EqmFormat *EqmFormatAt(PetscInt row);
+/* A row of the list of formats, in the order of recognition; NULL outside the list. Not collective. */
+PETSC_INTERN const EqmFormat *EqmFormatAt(int row);
+/* The row that the bytes of a file, or the suffix of its name, identify; -1: none. Not collective. */
+PETSC_INTERN int EqmFormatRowOfContent(const char *bytes, size_t length);
+PETSC_INTERN int EqmFormatRowOfSuffix(const char *file);
+/* The same as a format, or NULL. Not collective. */
 PETSC_INTERN const EqmFormat *EqmFormatOfContent(const char *bytes, size_t length);
 PETSC_INTERN const EqmFormat *EqmFormatOfSuffix(const char *file);
+/* ".ply .vtu ..." of the formats that can be written (or read), for messages. Not collective. */
 PETSC_INTERN void EqmFormatListSuffixes(PetscBool writable, char *text, size_t length);
+/* Write a mesh and its fields from this rank, the format by suffix; see write.c. Not collective. */
 PETSC_INTERN PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                                  PetscInt num_fields, char *error, size_t length);
+/* Refuse what a format cannot hold: more than 2^31 rows; tetrahedra. EQM_ERR_USAGE (quiet). Not collective. */
 PETSC_INTERN PetscErrorCode EqmRequireSmall(const EqmSerialMesh *mesh, const char *format, char *error, size_t length);
 PETSC_INTERN PetscErrorCode EqmRequireTriangles(const EqmSerialMesh *mesh, const char *format, char *error,
                                                 size_t length);
+/* Read a file into memory on this rank; see load.c. Not collective. */
 PETSC_INTERN PetscErrorCode EqmFormatLoadBytes(const char *file, char **bytes, size_t *length, char *error,
                                                size_t error_length);
 
-#define EQM_DECLARE_PARSER(name)                                                                                       \
-  PETSC_INTERN PetscBool EqmRecognise##name(const char *bytes, size_t length);                                         \
-  PETSC_INTERN PetscErrorCode EqmParse##name(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error,       \
-                                             size_t error_length)
-#define EQM_DECLARE_WRITER(name)                                                                                       \
-  PETSC_INTERN PetscErrorCode EqmWrite##name(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,   \
-                                             PetscInt num_fields, char *error, size_t error_length)
-
-EQM_DECLARE_PARSER(Obj);
-EQM_DECLARE_PARSER(Off);
-EQM_DECLARE_PARSER(Ply);
-EQM_DECLARE_PARSER(Stl);
-EQM_DECLARE_PARSER(Gmsh);
-EQM_DECLARE_PARSER(Vtu);
-EQM_DECLARE_PARSER(Vtk);
-EQM_DECLARE_PARSER(Gifti);
-EQM_DECLARE_PARSER(Medit);
-EQM_DECLARE_PARSER(Meshb);
-EQM_DECLARE_PARSER(Tetgen);
-EQM_DECLARE_WRITER(Obj);
-EQM_DECLARE_WRITER(Off);
-EQM_DECLARE_WRITER(Ply);
-EQM_DECLARE_WRITER(Stl);
-EQM_DECLARE_WRITER(Gmsh);
-EQM_DECLARE_WRITER(Vtu);
-EQM_DECLARE_WRITER(Gifti);
-EQM_DECLARE_WRITER(Vtk);
-EQM_DECLARE_WRITER(Medit);
-EQM_DECLARE_WRITER(Meshb);
-EQM_DECLARE_WRITER(Tetgen);
-PETSC_INTERN PetscErrorCode EqmLoadTetgen(const char *file, char **bytes, size_t *length, char *error,
-                                          size_t error_length);
-PETSC_INTERN PetscBool EqmRecogniseHdf5(const char *bytes, size_t length);
-PETSC_INTERN PetscErrorCode EqmSoupReadHdf5(MPI_Comm comm, const char *file, EqmSoup *soup);
-PETSC_INTERN PetscErrorCode EqmSoupWriteHdf5(EqmSoup soup, const char *file);
-PETSC_INTERN PetscErrorCode EqmSoupReadDensityHdf5(EqmSoup soup, const char *file, PetscReal *density);
+/* Begin the definition of a format's row: EQM_DEFINE_FORMAT(Obj) = {.name = "OBJ", ...}; */
+#define EQM_DEFINE_FORMAT(id)                                                                                          \
+  PETSC_INTERN const EqmFormat EqmFormat##id;                                                                          \
+  const EqmFormat EqmFormat##id
 
 #endif

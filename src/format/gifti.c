@@ -2,14 +2,14 @@
 #define _GNU_SOURCE
 #include "builder.h"
 #include "encoding.h"
-#include "format.h"
+#include "writers.h"
 #include "xml.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* EqmRecogniseGifti - an element GIFTI near the beginning. Not collective. */
-PetscBool EqmRecogniseGifti(const char *bytes, size_t length)
+/* An element GIFTI near the beginning. Not collective. */
+static PetscBool RecogniseGifti(const char *bytes, size_t length)
 {
   return memmem(bytes, PetscMin(length, 4096), "<GIFTI", 6) ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -118,13 +118,13 @@ static PetscErrorCode ReadNumbers(const Array *array, PetscReal *reals, PetscInt
   return code;
 }
 
-/* Place of entry k of row i among the numbers of the file. */
-static inline size_t PlaceOf(const Array *array, PetscInt64 i, PetscInt64 k)
+/* Index of entry k of row i among the numbers of the file. */
+static inline size_t IndexOf(const Array *array, PetscInt64 i, PetscInt64 k)
 {
   return (size_t)(array->column_major ? k * array->num_rows + i : 3 * i + k);
 }
 
-/* However well they are packed, can the file hold the numbers? To be asked before memory is taken for them. */
+/* However well they are packed, can the file hold the numbers? To be checked before memory is allocated for them. */
 static PetscErrorCode CheckRoom(const Array *array)
 {
   const size_t file_bytes = (size_t)(array->in->end - array->in->start);
@@ -146,7 +146,7 @@ static PetscErrorCode ParsePoints(EqmInput *in, xmlNodePtr node, EqmBuilder *bui
   EqmTry(EqmBuilderAddVertices(builder, (size_t)array.num_rows, &x));
   EqmTry(PetscMalloc1(3 * array.num_rows + 1, &numbers));
   code = ReadNumbers(&array, numbers, NULL);
-  for (PetscInt64 i = 0; !code && i < 3 * array.num_rows; ++i) x[i] = numbers[PlaceOf(&array, i / 3, i % 3)];
+  for (PetscInt64 i = 0; !code && i < 3 * array.num_rows; ++i) x[i] = numbers[IndexOf(&array, i / 3, i % 3)];
   EqmTry(PetscFree(numbers));
   return code;
 }
@@ -154,8 +154,8 @@ static PetscErrorCode ParsePoints(EqmInput *in, xmlNodePtr node, EqmBuilder *bui
 static PetscErrorCode AddTriangles(const Array *array, const PetscInt64 *numbers, EqmBuilder *builder)
 {
   for (PetscInt64 i = 0; i < array->num_rows; ++i) {
-    const PetscInt64 corners[3] = {numbers[PlaceOf(array, i, 0)], numbers[PlaceOf(array, i, 1)],
-                                   numbers[PlaceOf(array, i, 2)]};
+    const PetscInt64 corners[3] = {numbers[IndexOf(array, i, 0)], numbers[IndexOf(array, i, 1)],
+                                   numbers[IndexOf(array, i, 2)]};
 
     EqmTry(EqmBuilderAddFace(builder, NULL, (PetscInt64)builder->num_vertices, 3, corners));
   }
@@ -203,8 +203,9 @@ static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder)
   return code;
 }
 
-/* EqmParseGifti - read a GIFTI file. See EqmParser. */
-PetscErrorCode EqmParseGifti(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read a GIFTI file. See EqmParser. */
+static PetscErrorCode ParseGifti(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error,
+                                 size_t error_length)
 {
   EqmInput in;
   EqmBuilder builder;
@@ -213,3 +214,6 @@ PetscErrorCode EqmParseGifti(const char *bytes, size_t length, EqmSerialMesh *me
   EqmBuilderOpen(&builder, &in);
   return EqmBuilderFinish(&builder, ParseMesh(&in, &builder), mesh);
 }
+
+EQM_DEFINE_FORMAT(Gifti) = {
+    .name = "GIFTI", .suffixes = "gii", .recognise = RecogniseGifti, .parse = ParseGifti, .write = EqmWriteGifti};

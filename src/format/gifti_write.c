@@ -1,7 +1,7 @@
 /* GIFTI: point set, triangles and a shape per vertex field. The format knows single precision only, and its readers
    take nothing else. */
 #include "encoding.h"
-#include "format.h"
+#include "writers.h"
 #include "input.h"
 #include "scalar.h"
 

@@ -1,5 +1,6 @@
 /* The mesh part of our HDF5 files: /mesh/vertices, n x 3 float64, and /mesh/cells, m x 3 or 4 int64. All ranks read and
    write their slabs together. */
+#include "hdf5.h"
 #include "format.h"
 #include "store/h5.h"
 
@@ -209,7 +210,7 @@ static PetscErrorCode ReadDensity(EqmH5 h5, EqmSoup soup, PetscReal *density)
 
 /* EqmSoupReadDensityHdf5 - read this rank's slab of /cell/density.
 
-   Collective. density: one number per cell of the slab; their values are not looked at. Errors: EQM_ERR_IO (missing,
+   Collective. density: one number per cell of the slab; their values are not checked. Errors: EQM_ERR_IO (missing,
    damaged, no such array), EQM_ERR_MESH (not one number per cell). */
 PetscErrorCode EqmSoupReadDensityHdf5(EqmSoup soup, const char *file, PetscReal *density)
 {
@@ -223,3 +224,9 @@ PetscErrorCode EqmSoupReadDensityHdf5(EqmSoup soup, const char *file, PetscReal 
   PetscCall(code);
   PetscFunctionReturn(0);
 }
+
+EQM_DEFINE_FORMAT(Hdf5) = {.name = "HDF5",
+                           .suffixes = "h5 hdf5",
+                           .recognise = EqmRecogniseHdf5,
+                           .read_parallel = EqmSoupReadHdf5,
+                           .write_parallel = EqmSoupWriteHdf5};

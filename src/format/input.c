@@ -31,7 +31,7 @@ static void Describe(EqmInput *in, const char *position, const char *format, va_
 {
   int used = 0;
 
-  if (!position) { /* no place to tell */
+  if (!position) { /* the message has no position */
   } else if (in->binary) {
     used = snprintf(in->error, in->error_length, "byte %lld: ", (long long)(position - in->start));
   } else {
@@ -41,7 +41,7 @@ static void Describe(EqmInput *in, const char *position, const char *format, va_
   vsnprintf(in->error + used, in->error_length - (size_t)used, format, arguments);
 }
 
-/* EqmReject - say what is wrong where the cursor stands. Not collective. Returns `code`, quietly. */
+/* EqmReject - say what is wrong at the cursor. Not collective. Returns `code`, quietly. */
 PetscErrorCode EqmReject(EqmInput *in, PetscErrorCode code, const char *format, ...)
 {
   va_list arguments;
@@ -52,7 +52,7 @@ PetscErrorCode EqmReject(EqmInput *in, PetscErrorCode code, const char *format, 
   return code;
 }
 
-/* EqmRejectAt - say what is wrong at another place than the cursor, or (NULL) without a place. Not collective. Returns
+/* EqmRejectAt - say what is wrong at `position`, or (NULL) without a position. Not collective. Returns
  * `code`, quietly. */
 PetscErrorCode EqmRejectAt(EqmInput *in, const char *position, PetscErrorCode code, const char *format, ...)
 {
@@ -160,7 +160,7 @@ PetscErrorCode EqmTakeBytes(EqmInput *in, size_t count, const char *what, const 
 }
 
 /* EqmReadCount - read the number of `what`, each of which takes at least `bytes_each` bytes of the file, and refuse one
-   that the rest of the file cannot hold, before anybody allocates for it. Not collective. Errors: EQM_ERR_IO (quiet).
+   that the rest of the file cannot hold, before memory is allocated for it. Not collective. Errors: EQM_ERR_IO (quiet).
  */
 PetscErrorCode EqmReadCount(EqmInput *in, const char *what, size_t bytes_each, PetscInt64 *count)
 {

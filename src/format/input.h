@@ -10,7 +10,7 @@
 
 typedef struct {
   const char *start, *cursor, *end;
-  PetscBool binary; /* positions are told as bytes, not as lines */
+  PetscBool binary; /* positions in messages are bytes, not lines */
   char *error;      /* where EqmReject writes */
   size_t error_length;
 } EqmInput;

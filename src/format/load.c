@@ -1,5 +1,6 @@
 /* A whole file into memory. */
 #include "format.h"
+#include "hdf5.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -34,7 +35,7 @@ static int ReadAll(int descriptor, size_t expected, char **bytes, size_t *length
   return ENOMEM;
 }
 
-/* An HDF5 file will be read by all ranks, slab by slab: its head is enough to see that. */
+/* An HDF5 file will be read by all ranks, slab by slab: here its magic bytes are enough. */
 static PetscBool LoadHead(int descriptor, char **bytes, size_t *length)
 {
   char head[8];

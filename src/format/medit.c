@@ -18,8 +18,8 @@ typedef struct {
   PetscInt64 dimension;
 } Medit;
 
-/* EqmRecogniseMedit - the first keyword, after comments. Not collective. */
-PetscBool EqmRecogniseMedit(const char *bytes, size_t length)
+/* The first keyword, after comments. Not collective. */
+static PetscBool RecogniseMedit(const char *bytes, size_t length)
 {
   EqmInput in;
   char unused[8];
@@ -156,8 +156,9 @@ static PetscErrorCode ParseSections(Medit *medit)
   return EqmReject(in, EQM_ERR_IO, "the keyword End is missing: the file is truncated");
 }
 
-/* EqmParseMedit - read a .mesh file. See EqmParser. */
-PetscErrorCode EqmParseMedit(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read a .mesh file. See EqmParser. */
+static PetscErrorCode ParseMedit(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error,
+                                 size_t error_length)
 {
   EqmInput in;
   Medit medit = {.in = &in};
@@ -167,9 +168,9 @@ PetscErrorCode EqmParseMedit(const char *bytes, size_t length, EqmSerialMesh *me
   return EqmBuilderFinish(&medit.builder, ParseSections(&medit), mesh);
 }
 
-/* EqmWriteMedit - write a .mesh file with reference number 0 everywhere. See EqmWriter. */
-PetscErrorCode EqmWriteMedit(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
-                             PetscInt num_fields, char *error, size_t error_length)
+/* Write a .mesh file with reference number 0 everywhere. See EqmWriter. */
+static PetscErrorCode WriteMedit(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
+                                 PetscInt num_fields, char *error, size_t error_length)
 {
   const PetscInt size = mesh->cell_size;
 
@@ -188,3 +189,6 @@ PetscErrorCode EqmWriteMedit(EqmAtomicFile *file, const EqmSerialMesh *mesh, con
   EqmAtomicPrint(file, "\nEnd\n");
   return 0;
 }
+
+EQM_DEFINE_FORMAT(Medit) = {
+    .name = "Medit mesh", .suffixes = "mesh", .recognise = RecogniseMedit, .parse = ParseMedit, .write = WriteMedit};

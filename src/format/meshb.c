@@ -1,4 +1,4 @@
-/* Medit's .meshb, the binary form, versions 1 to 4, of either byte order: blocks of a keyword's code, the place of the
+/* Medit's .meshb, the binary form, versions 1 to 4, of either byte order: blocks of a keyword's code, the offset of the
    next block, a count and records. */
 #include "format.h"
 #include "medit.h"
@@ -10,7 +10,7 @@ typedef struct {
   EqmInput *in;
   EqmBuilder builder;
   PetscBool big_endian;
-  EqmScalarType integer, place, real; /* of this version */
+  EqmScalarType integer, offset, real; /* of this version */
   PetscInt64 dimension;
 } Meshb;
 
@@ -26,8 +26,8 @@ static PetscBool ReadMagic(const char *bytes, size_t length, PetscBool *big_endi
              : PETSC_FALSE;
 }
 
-/* EqmRecogniseMeshb - the number 1, a version, and the keyword Dimension. Not collective. */
-PetscBool EqmRecogniseMeshb(const char *bytes, size_t length)
+/* The number 1, a version, and the keyword Dimension. Not collective. */
+static PetscBool RecogniseMeshb(const char *bytes, size_t length)
 {
   PetscBool big_endian;
   PetscInt64 version;
@@ -100,7 +100,7 @@ static PetscErrorCode ParseCells(Meshb *meshb, const EqmMeditKind *kind)
 static PetscErrorCode ParseHeader(Meshb *meshb)
 {
   static const EqmScalarType integer[5] = {0, EQM_SCALAR_INT32, EQM_SCALAR_INT32, EQM_SCALAR_INT32, EQM_SCALAR_INT64};
-  static const EqmScalarType place[5] = {0, EQM_SCALAR_INT32, EQM_SCALAR_INT32, EQM_SCALAR_INT64, EQM_SCALAR_INT64};
+  static const EqmScalarType offset[5] = {0, EQM_SCALAR_INT32, EQM_SCALAR_INT32, EQM_SCALAR_INT64, EQM_SCALAR_INT64};
   EqmInput *const in = meshb->in;
   PetscInt64 version, next;
 
@@ -110,9 +110,9 @@ static PetscErrorCode ParseHeader(Meshb *meshb)
   }
   in->cursor += 12;
   meshb->integer = integer[version];
-  meshb->place = place[version];
+  meshb->offset = offset[version];
   meshb->real = version == 1 ? EQM_SCALAR_FLOAT32 : EQM_SCALAR_FLOAT64;
-  EqmTry(TakeInteger(meshb, meshb->place, "dimension", &next));
+  EqmTry(TakeInteger(meshb, meshb->offset, "dimension", &next));
   EqmTry(TakeInteger(meshb, EQM_SCALAR_INT32, "dimension", &meshb->dimension));
   if (meshb->dimension == 2 || meshb->dimension == 3) return 0;
   return EqmReject(in, EQM_ERR_IO, "dimension %lld: only 2 and 3 are known", (long long)meshb->dimension);
@@ -127,7 +127,7 @@ static PetscErrorCode ParseBlocks(Meshb *meshb)
   for (;;) {
     EqmTry(TakeInteger(meshb, EQM_SCALAR_INT32, "next keyword", &code));
     if (code == CODE_END) return 0;
-    EqmTry(TakeInteger(meshb, meshb->place, "place of the next keyword", &next));
+    EqmTry(TakeInteger(meshb, meshb->offset, "offset of the next keyword", &next));
     if (next <= in->cursor - in->start || next > in->end - in->start) {
       return EqmReject(in, EQM_ERR_IO, "the next keyword cannot be at byte %lld: the file is truncated or damaged",
                        (long long)next);
@@ -144,8 +144,9 @@ static PetscErrorCode ParseBlocks(Meshb *meshb)
   }
 }
 
-/* EqmParseMeshb - read a .meshb file. See EqmParser. */
-PetscErrorCode EqmParseMeshb(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read a .meshb file. See EqmParser. */
+static PetscErrorCode ParseMeshb(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error,
+                                 size_t error_length)
 {
   EqmInput in;
   Meshb meshb = {.in = &in};
@@ -155,37 +156,37 @@ PetscErrorCode EqmParseMeshb(const char *bytes, size_t length, EqmSerialMesh *me
   return EqmBuilderFinish(&meshb.builder, ParseBlocks(&meshb), mesh);
 }
 
-/* The beginning of a block of version 3 with `count` records; moves `place`, where the block begins, behind it. */
-static void StartBlock(EqmAtomicFile *file, int32_t code, PetscInt count, size_t record_bytes, int64_t *place)
+/* The beginning of a block of version 3 with `count` records; moves `offset`, where the block begins, behind it. */
+static void StartBlock(EqmAtomicFile *file, int32_t code, PetscInt count, size_t record_bytes, int64_t *offset)
 {
   const int32_t number = (int32_t)count;
 
-  *place += 16 + (int64_t)record_bytes * count;
+  *offset += 16 + (int64_t)record_bytes * count;
   EqmAtomicWrite(file, &code, 4);
-  EqmAtomicWrite(file, place, 8);
+  EqmAtomicWrite(file, offset, 8);
   EqmAtomicWrite(file, &number, 4);
 }
 
-/* EqmWriteMeshb - write a .meshb file of version 3 (doubles, 64-bit places) with reference number 0 everywhere. See
+/* Write a .meshb file of version 3 (doubles, 64-bit offsets) with reference number 0 everywhere. See
    EqmWriter. */
-PetscErrorCode EqmWriteMeshb(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
-                             PetscInt num_fields, char *error, size_t error_length)
+static PetscErrorCode WriteMeshb(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
+                                 PetscInt num_fields, char *error, size_t error_length)
 {
   const PetscInt size = mesh->cell_size;
   const int32_t head[3] = {1, 3, CODE_DIMENSION}, dimension = 3, zero = 0, end = CODE_END;
   const int64_t nowhere = 0;
-  int64_t place = 24;
+  int64_t offset = 24;
 
   EqmTry(EqmRequireSmall(mesh, ".meshb", error, error_length));
   EqmAtomicWrite(file, head, sizeof(head));
-  EqmAtomicWrite(file, &place, 8);
+  EqmAtomicWrite(file, &offset, 8);
   EqmAtomicWrite(file, &dimension, 4);
-  StartBlock(file, CODE_VERTICES, mesh->num_vertices, 28, &place);
+  StartBlock(file, CODE_VERTICES, mesh->num_vertices, 28, &offset);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
     EqmAtomicWrite(file, mesh->vertices + 3 * (size_t)i, 24);
     EqmAtomicWrite(file, &zero, 4);
   }
-  StartBlock(file, size == 3 ? 6 : 8, mesh->num_cells, 4 * ((size_t)size + 1), &place);
+  StartBlock(file, size == 3 ? 6 : 8, mesh->num_cells, 4 * ((size_t)size + 1), &offset);
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
     int32_t record[5] = {0, 0, 0, 0, 0};
 
@@ -196,3 +197,6 @@ PetscErrorCode EqmWriteMeshb(EqmAtomicFile *file, const EqmSerialMesh *mesh, con
   EqmAtomicWrite(file, &nowhere, 8);
   return 0;
 }
+
+EQM_DEFINE_FORMAT(Meshb) = {
+    .name = "Medit meshb", .suffixes = "meshb", .recognise = RecogniseMeshb, .parse = ParseMeshb, .write = WriteMeshb};

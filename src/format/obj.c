@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* The keywords that OBJ has, to tell an OBJ file without a mesh from a file of something else. */
+/* The keywords of OBJ: a file with other first words is no OBJ file. */
 static PetscBool IsKeyword(const char *word, size_t length)
 {
   static const char *const keyword[] = {"v",      "vt",     "vn",     "vp",   "f",      "p",      "l",
@@ -19,8 +19,8 @@ static PetscBool IsKeyword(const char *word, size_t length)
   return length && word[0] == '#' ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* EqmRecogniseObj - a weak guess, since OBJ has no magic: the first statement is one that OBJ has. Not collective. */
-PetscBool EqmRecogniseObj(const char *bytes, size_t length)
+/* A weak guess, since OBJ has no magic: the first statement is one that OBJ has. Not collective. */
+static PetscBool RecogniseObj(const char *bytes, size_t length)
 {
   EqmInput in;
   char unused[8];
@@ -136,8 +136,8 @@ static PetscErrorCode ParseStatements(EqmInput *in, EqmBuilder *builder)
   return 0;
 }
 
-/* EqmParseObj - read an OBJ file. See EqmParser. */
-PetscErrorCode EqmParseObj(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read an OBJ file. See EqmParser. */
+static PetscErrorCode ParseObj(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
 {
   EqmInput in;
   EqmBuilder builder;
@@ -147,9 +147,9 @@ PetscErrorCode EqmParseObj(const char *bytes, size_t length, EqmSerialMesh *mesh
   return EqmBuilderFinish(&builder, ParseStatements(&in, &builder), mesh);
 }
 
-/* EqmWriteObj - write an OBJ file. See EqmWriter. */
-PetscErrorCode EqmWriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
-                           char *error, size_t error_length)
+/* Write an OBJ file. See EqmWriter. */
+static PetscErrorCode WriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
+                               PetscInt num_fields, char *error, size_t error_length)
 {
   EqmTry(EqmRequireTriangles(mesh, "OBJ", error, error_length));
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
@@ -164,3 +164,6 @@ PetscErrorCode EqmWriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const
   }
   return 0;
 }
+
+EQM_DEFINE_FORMAT(Obj) = {
+    .name = "OBJ", .suffixes = "obj", .recognise = RecogniseObj, .parse = ParseObj, .write = WriteObj};

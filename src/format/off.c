@@ -25,8 +25,8 @@ static PetscBool ReadMagic(EqmInput *in)
   return length == 3 && !strncmp(word, "OFF", 3) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* EqmRecogniseOff - the first word, after comments, is OFF or one of its relatives. Not collective. */
-PetscBool EqmRecogniseOff(const char *bytes, size_t length)
+/* The first word, after comments, is OFF or one of its relatives. Not collective. */
+static PetscBool RecogniseOff(const char *bytes, size_t length)
 {
   EqmInput in;
   char unused[8];
@@ -48,7 +48,7 @@ static PetscErrorCode ParseHeader(EqmInput *in, PetscInt64 *num_vertices, PetscI
   EqmTry(EqmReadCount(in, "vertices", 6, num_vertices));
   EqmSkipSpace(in, '#');
   EqmTry(EqmReadCount(in, "faces", 4, num_faces));
-  EqmSkipLine(in); /* the number of edges, which nobody trusts */
+  EqmSkipLine(in); /* the number of edges, which is often wrong */
   return 0;
 }
 
@@ -102,8 +102,8 @@ static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder)
   return ParseFaces(in, num_faces, builder);
 }
 
-/* EqmParseOff - read an OFF file. See EqmParser. */
-PetscErrorCode EqmParseOff(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read an OFF file. See EqmParser. */
+static PetscErrorCode ParseOff(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
 {
   EqmInput in;
   EqmBuilder builder;
@@ -113,9 +113,9 @@ PetscErrorCode EqmParseOff(const char *bytes, size_t length, EqmSerialMesh *mesh
   return EqmBuilderFinish(&builder, ParseMesh(&in, &builder), mesh);
 }
 
-/* EqmWriteOff - write an OFF file. See EqmWriter. */
-PetscErrorCode EqmWriteOff(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
-                           char *error, size_t error_length)
+/* Write an OFF file. See EqmWriter. */
+static PetscErrorCode WriteOff(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
+                               PetscInt num_fields, char *error, size_t error_length)
 {
   EqmTry(EqmRequireTriangles(mesh, "OFF", error, error_length));
   EqmAtomicPrint(file, "OFF\n%lld %lld 0\n", (long long)mesh->num_vertices, (long long)mesh->num_cells);
@@ -130,3 +130,6 @@ PetscErrorCode EqmWriteOff(EqmAtomicFile *file, const EqmSerialMesh *mesh, const
   }
   return 0;
 }
+
+EQM_DEFINE_FORMAT(Off) = {
+    .name = "OFF", .suffixes = "off coff noff", .recognise = RecogniseOff, .parse = ParseOff, .write = WriteOff};

@@ -1,6 +1,6 @@
 /* PLY: ASCII and binary of both byte orders, with any elements and properties beside the mesh. */
 #include "builder.h"
-#include "format.h"
+#include "writers.h"
 #include "scalar.h"
 
 #include <string.h>
@@ -31,8 +31,8 @@ typedef struct {
   Element element[MAX_ELEMENTS];
 } Header;
 
-/* EqmRecognisePly - the first line is "ply". Not collective. */
-PetscBool EqmRecognisePly(const char *bytes, size_t length)
+/* The first line is "ply". Not collective. */
+static PetscBool RecognisePly(const char *bytes, size_t length)
 {
   return length >= 4 && !memcmp(bytes, "ply", 3) && EqmIsSpace(bytes[3]) ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -229,7 +229,7 @@ static PetscErrorCode ReadList(EqmInput *in, const Header *header, const Propert
       EqmTry(ReadWhole(in, header, property->type, &corners[k]));
     } else if (header->ascii) {
       EqmTry(ReadNumber(in, header, property->type, &unused));
-    } else { /* the rest at one stroke */
+    } else { /* the rest in one step */
       if ((size_t)(*count - k) > EqmRemaining(in)) return EqmReject(in, EQM_ERR_IO, "the file ends inside a list");
       return EqmTakeBytes(in, (size_t)(*count - k) * EqmScalarSize(property->type), "list", &bytes);
     }
@@ -264,7 +264,7 @@ static PetscErrorCode ParseRows(EqmInput *in, const Header *header, const Elemen
   const size_t smallest = SmallestRow(header, element);
   PetscReal *vertices = NULL;
 
-  if (!smallest) return 0; /* rows without properties take no place in the file */
+  if (!smallest) return 0; /* rows without properties have no bytes in the file */
   if ((size_t)element->count > (EqmRemaining(in) + 1) / smallest) {
     in->binary = PETSC_FALSE;
     return EqmRejectAt(in, element->position, EQM_ERR_IO,
@@ -288,8 +288,8 @@ static PetscErrorCode ParseMesh(EqmInput *in, Header *header, EqmBuilder *builde
   return 0;
 }
 
-/* EqmParsePly - read a PLY file. See EqmParser. */
-PetscErrorCode EqmParsePly(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read a PLY file. See EqmParser. */
+static PetscErrorCode ParsePly(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
 {
   EqmInput in;
   EqmBuilder builder;
@@ -303,3 +303,6 @@ PetscErrorCode EqmParsePly(const char *bytes, size_t length, EqmSerialMesh *mesh
   EqmTry(PetscFree(header));
   return EqmBuilderFinish(&builder, code, mesh);
 }
+
+EQM_DEFINE_FORMAT(Ply) = {
+    .name = "PLY", .suffixes = "ply", .recognise = RecognisePly, .parse = ParsePly, .write = EqmWritePly};

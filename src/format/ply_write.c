@@ -1,5 +1,5 @@
 /* PLY, binary little endian, with fields as properties. */
-#include "format.h"
+#include "writers.h"
 #include "input.h"
 #include "scalar.h"
 

@@ -10,8 +10,8 @@
 #define HEADER_BYTES   80
 #define TRIANGLE_BYTES 50
 
-/* Does the file's length agree with the number of triangles in a binary header? ASCII files cannot be told by their
-   first word alone: many binary ones begin with "solid", too. */
+/* Does the file's length agree with the number of triangles in a binary header? ASCII files cannot be recognised by
+   their first word alone: many binary ones begin with "solid", too. */
 static PetscBool IsBinary(const char *bytes, size_t length)
 {
   if (length < HEADER_BYTES + 4) return PETSC_FALSE;
@@ -34,8 +34,8 @@ static PetscBool IsAscii(const char *bytes, size_t length)
   return EqmReadKeyword(&in, "facet") || EqmReadKeyword(&in, "endsolid") ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* EqmRecogniseStl - "solid" and a facet, or a length that fits a binary header. Not collective. */
-PetscBool EqmRecogniseStl(const char *bytes, size_t length)
+/* "solid" and a facet, or a length that fits a binary header. Not collective. */
+static PetscBool RecogniseStl(const char *bytes, size_t length)
 {
   return IsBinary(bytes, length) || IsAscii(bytes, length) ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -101,7 +101,7 @@ static PetscErrorCode ParseAscii(EqmInput *in, EqmBuilder *builder)
   return 0;
 }
 
-/* Each three vertices are a triangle; make one of those that are in the same place. */
+/* Each three vertices are a triangle; vertices of equal coordinates become one. */
 static PetscErrorCode WeldTriangles(EqmBuilder *builder)
 {
   PetscInt *cells;
@@ -119,8 +119,8 @@ static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder)
   return WeldTriangles(builder);
 }
 
-/* EqmParseStl - read an STL file. See EqmParser. */
-PetscErrorCode EqmParseStl(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read an STL file. See EqmParser. */
+static PetscErrorCode ParseStl(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
 {
   EqmInput in;
   EqmBuilder builder;
@@ -130,9 +130,9 @@ PetscErrorCode EqmParseStl(const char *bytes, size_t length, EqmSerialMesh *mesh
   return EqmBuilderFinish(&builder, ParseMesh(&in, &builder), mesh);
 }
 
-/* EqmWriteStl - write a binary STL file. See EqmWriter. The format has single precision and no vertices of its own. */
-PetscErrorCode EqmWriteStl(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
-                           char *error, size_t error_length)
+/* Write a binary STL file. See EqmWriter. The format has single precision and no vertices of its own. */
+static PetscErrorCode WriteStl(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
+                               PetscInt num_fields, char *error, size_t error_length)
 {
   const char header[HEADER_BYTES] = "equimap binary STL";
   const uint32_t num_triangles = (uint32_t)mesh->num_cells;
@@ -153,3 +153,6 @@ PetscErrorCode EqmWriteStl(EqmAtomicFile *file, const EqmSerialMesh *mesh, const
   }
   return 0;
 }
+
+EQM_DEFINE_FORMAT(Stl) = {
+    .name = "STL", .suffixes = "stl", .recognise = RecogniseStl, .parse = ParseStl, .write = WriteStl};

@@ -37,10 +37,10 @@ PetscErrorCode EqmTagMapClose(EqmTagMap *map, PetscInt64 *repeated)
 
   *repeated = -1;
   if (!map->count || map->consecutive) return 0;
-  code = PetscMalloc1(map->count, &map->place);
+  code = PetscMalloc1(map->count, &map->number);
   if (code) return code;
-  for (size_t i = 0; i < map->count; ++i) map->place[i] = (PetscInt)i;
-  code = PetscTimSortWithArray((PetscInt)map->count, map->tag, sizeof(*map->tag), map->place, sizeof(*map->place),
+  for (size_t i = 0; i < map->count; ++i) map->number[i] = (PetscInt)i;
+  code = PetscTimSortWithArray((PetscInt)map->count, map->tag, sizeof(*map->tag), map->number, sizeof(*map->number),
                                CompareTags, NULL);
   for (size_t i = 1; i < map->count; ++i) {
     if (map->tag[i] == map->tag[i - 1]) *repeated = map->tag[i];
@@ -66,7 +66,7 @@ PetscInt EqmTagMapFind(const EqmTagMap *map, PetscInt64 tag)
       high = middle;
     }
   }
-  return low < map->count && map->tag[low] == tag ? map->place[low] : -1;
+  return low < map->count && map->tag[low] == tag ? map->number[low] : -1;
 }
 
 /* EqmTagMapReset - free everything. Not collective. */
@@ -74,7 +74,7 @@ PetscErrorCode EqmTagMapReset(EqmTagMap *map)
 {
   PetscErrorCode code = PetscFree(map->tag);
 
-  if (!code) code = PetscFree(map->place);
+  if (!code) code = PetscFree(map->number);
   *map = (EqmTagMap){0};
   return code;
 }

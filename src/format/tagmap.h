@@ -9,7 +9,7 @@ typedef struct {
   PetscInt64 *tag;       /* in file order; ascending after EqmTagMapClose */
   PetscInt64 first;      /* tags are first, first + 1, ... in file order while `consecutive` */
   PetscBool consecutive; /* the common case, which needs no search */
-  PetscInt *place;       /* otherwise: number of the vertex that has tag[i] */
+  PetscInt *number;      /* otherwise: number of the vertex that has tag[i] */
 } EqmTagMap;
 
 PETSC_INTERN PetscErrorCode EqmTagMapReserve(EqmTagMap *map, size_t count);

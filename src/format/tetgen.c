@@ -11,7 +11,7 @@
 
 #define BETWEEN_FILES '\f'
 
-/* The first line of either file: four whole numbers at most, of which the second tells the files apart. */
+/* The first line of either file: four whole numbers at most, of which the second differs between the two files. */
 typedef struct {
   PetscInt64 count, width, attributes, markers;
 } Header;
@@ -30,9 +30,9 @@ static PetscBool ReadHeader(EqmInput *in, Header *header)
   return EqmAtLineEnd(in) || *in->cursor == '#' ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* EqmRecogniseTetgen - a weak guess, since these files have no magic: a first line that fits, and a second one that
+/* A weak guess, since these files have no magic: a first line that fits, and a second one that
    begins with the number 0 or 1. Not collective. */
-PetscBool EqmRecogniseTetgen(const char *bytes, size_t length)
+static PetscBool RecogniseTetgen(const char *bytes, size_t length)
 {
   EqmInput in;
   char unused[8];
@@ -55,8 +55,8 @@ static PetscBool PartnerOf(const char *file, const char *suffix, char *name, siz
   return snprintf(name, length, "%.*s%s", (int)(dot - file), file, suffix) < (int)length ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* EqmLoadTetgen - the bytes of both files. A file under another name holds both already. See EqmLoader. */
-PetscErrorCode EqmLoadTetgen(const char *file, char **bytes, size_t *length, char *error, size_t error_length)
+/* The bytes of both files. A file under another name holds both already. See EqmLoader. */
+static PetscErrorCode LoadTetgen(const char *file, char **bytes, size_t *length, char *error, size_t error_length)
 {
   char name[PETSC_MAX_PATH_LEN], *part[2] = {NULL, NULL}, *both = NULL;
   static const char *const suffix[2] = {".node", ".ele"};
@@ -185,7 +185,7 @@ static PetscErrorCode ParseElements(EqmInput *in, EqmBuilder *builder, PetscInt6
   return 0;
 }
 
-/* Positions are told as lines of the one file, then of the other. */
+/* Positions in messages are lines of the one file, then of the other. */
 static PetscErrorCode ParseBoth(EqmInput *in, EqmBuilder *builder)
 {
   const char *const end = in->end, *const border = memchr(in->start, BETWEEN_FILES, EqmRemaining(in));
@@ -199,8 +199,9 @@ static PetscErrorCode ParseBoth(EqmInput *in, EqmBuilder *builder)
   return ParseElements(in, builder, first_vertex);
 }
 
-/* EqmParseTetgen - read the two files, one behind the other. See EqmParser. */
-PetscErrorCode EqmParseTetgen(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read the two files, one behind the other. See EqmParser. */
+static PetscErrorCode ParseTetgen(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error,
+                                  size_t error_length)
 {
   EqmInput in;
   EqmBuilder builder;
@@ -232,10 +233,10 @@ static void PrintElements(EqmAtomicFile *file, const EqmSerialMesh *mesh)
   }
 }
 
-/* EqmWriteTetgen - write both files, numbered from 0, whichever of them is named; the other one is there, complete,
+/* Write both files, numbered from 0, whichever of them is named; the other one is there, complete,
    before the caller finishes this one. See EqmWriter. */
-PetscErrorCode EqmWriteTetgen(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
-                              PetscInt num_fields, char *error, size_t error_length)
+static PetscErrorCode WriteTetgen(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
+                                  PetscInt num_fields, char *error, size_t error_length)
 {
   const char *const dot = strrchr(file->path, '.');
   const PetscBool is_node = dot && !strcasecmp(dot, ".node") ? PETSC_TRUE : PETSC_FALSE;
@@ -251,3 +252,10 @@ PetscErrorCode EqmWriteTetgen(EqmAtomicFile *file, const EqmSerialMesh *mesh, co
   PrintElements(is_node ? &partner : file, mesh);
   return EqmAtomicCommit(&partner, error, error_length);
 }
+
+EQM_DEFINE_FORMAT(Tetgen) = {.name = "TetGen",
+                             .suffixes = "node ele",
+                             .recognise = RecogniseTetgen,
+                             .parse = ParseTetgen,
+                             .write = WriteTetgen,
+                             .load = LoadTetgen};

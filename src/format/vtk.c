@@ -1,5 +1,5 @@
 /* Legacy VTK: POLYDATA and UNSTRUCTURED_GRID, ASCII and binary, versions 1 to 5.1. */
-#include "format.h"
+#include "writers.h"
 #include "scalar.h"
 #include "vtkcells.h"
 
@@ -12,8 +12,8 @@ typedef struct {
   EqmVtkCells cells; /* of an unstructured grid: its types come later */
 } Vtk;
 
-/* EqmRecogniseVtk - the first line. Not collective. */
-PetscBool EqmRecogniseVtk(const char *bytes, size_t length)
+/* The first line. Not collective. */
+static PetscBool RecogniseVtk(const char *bytes, size_t length)
 {
   static const char magic[] = "# vtk DataFile Version";
 
@@ -51,7 +51,7 @@ static PetscErrorCode ParseType(EqmInput *in, EqmScalarType *type)
                    "unknown data type; known are float, double, int, long, short, char and unsigned ones");
 }
 
-/* Can the rest of the file hold so many numbers? To be asked before memory is taken for them. */
+/* Can the rest of the file hold so many numbers? To be checked before memory is allocated for them. */
 static PetscErrorCode CheckRoom(Vtk *vtk, EqmScalarType type, PetscInt64 count)
 {
   const size_t bytes_each = vtk->ascii ? 2 : EqmScalarSize(type);
@@ -289,7 +289,7 @@ static PetscErrorCode ParseMesh(Vtk *vtk)
 {
   PetscBool last = PETSC_FALSE;
 
-  if (!EqmRecogniseVtk(vtk->in->start, EqmRemaining(vtk->in))) {
+  if (!RecogniseVtk(vtk->in->start, EqmRemaining(vtk->in))) {
     return EqmReject(vtk->in, EQM_ERR_IO, "a VTK file begins with \"# vtk DataFile Version\"");
   }
   EqmTry(ParseHeader(vtk));
@@ -302,8 +302,8 @@ static PetscErrorCode ParseMesh(Vtk *vtk)
   return EqmBuilderAddVtkCells(&vtk->builder, &vtk->cells, 0, (PetscInt64)vtk->builder.num_vertices);
 }
 
-/* EqmParseVtk - read a legacy VTK file. See EqmParser. */
-PetscErrorCode EqmParseVtk(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read a legacy VTK file. See EqmParser. */
+static PetscErrorCode ParseVtk(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
 {
   EqmInput in;
   Vtk vtk = {0};
@@ -316,3 +316,6 @@ PetscErrorCode EqmParseVtk(const char *bytes, size_t length, EqmSerialMesh *mesh
   EqmTry(EqmVtkCellsReset(&vtk.cells));
   return EqmBuilderFinish(&vtk.builder, code, mesh);
 }
+
+EQM_DEFINE_FORMAT(Vtk) = {
+    .name = "legacy VTK", .suffixes = "vtk", .recognise = RecogniseVtk, .parse = ParseVtk, .write = EqmWriteVtk};

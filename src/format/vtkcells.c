@@ -4,7 +4,7 @@
 
 enum { VTK_TRIANGLE = 5, VTK_POLYGON = 7, VTK_TETRA = 10 };
 
-/* Dimension of a VTK cell type; 0 for points and for types that we never heard of with nothing in them. */
+/* Dimension of a VTK cell type; 0 for points and for unknown types without corners. */
 static PetscInt DimensionOf(PetscInt64 type)
 {
   static const int curves[] = {3, 4, 21, 35, 68, 75};

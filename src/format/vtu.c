@@ -1,14 +1,14 @@
 /* VTK's XML files of unstructured grids (.vtu) and surfaces (.vtp). */
 #define _GNU_SOURCE
-#include "format.h"
+#include "writers.h"
 #include "vtkcells.h"
 #include "vtuarray.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* EqmRecogniseVtu - an element VTKFile near the beginning. Not collective. */
-PetscBool EqmRecogniseVtu(const char *bytes, size_t length)
+/* An element VTKFile near the beginning. Not collective. */
+static PetscBool RecogniseVtu(const char *bytes, size_t length)
 {
   return memmem(bytes, PetscMin(length, 4096), "<VTKFile", 8) ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -70,7 +70,7 @@ static PetscErrorCode ParsePoints(const EqmVtuEncoding *encoding, EqmBuilder *bu
   return EqmVtuReadReals(encoding, array, 3 * *num_points, x);
 }
 
-/* Types (of grids, not of surfaces), offsets and connectivity, whose length the last offset tells. */
+/* Types (of grids, not of surfaces), offsets and connectivity, whose length is the last offset. */
 static PetscErrorCode ReadCells(const EqmVtuEncoding *encoding, xmlNodePtr parent, PetscBool has_types,
                                 EqmVtkCells *cells)
 {
@@ -172,8 +172,8 @@ static PetscErrorCode ParseMesh(EqmVtuEncoding *encoding, EqmBuilder *builder)
   return code;
 }
 
-/* EqmParseVtu - read a VTU or VTP file. See EqmParser. */
-PetscErrorCode EqmParseVtu(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* Read a VTU or VTP file. See EqmParser. */
+static PetscErrorCode ParseVtu(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
 {
   EqmInput in;
   EqmBuilder builder;
@@ -183,3 +183,8 @@ PetscErrorCode EqmParseVtu(const char *bytes, size_t length, EqmSerialMesh *mesh
   EqmBuilderOpen(&builder, &in);
   return EqmBuilderFinish(&builder, ParseMesh(&encoding, &builder), mesh);
 }
+
+EQM_DEFINE_FORMAT(Vtu) = {
+    .name = "VTU", .suffixes = "vtu", .recognise = RecogniseVtu, .parse = ParseVtu, .write = EqmWriteVtu};
+
+EQM_DEFINE_FORMAT(Vtp) = {.name = "VTP", .suffixes = "vtp", .recognise = RecogniseVtu, .parse = ParseVtu};

@@ -10,7 +10,7 @@ static uint64_t Mix(uint64_t h)
   return h ^ h >> 32;
 }
 
-/* Equal places hash alike: 0 and -0 are one place, and a NaN is at the place of the same NaN. */
+/* Equal points have equal hashes: 0 and -0 are equal, and a NaN equals the same NaN. */
 static uint64_t HashOf(const PetscReal *point)
 {
   uint64_t hash = 0;
@@ -25,7 +25,7 @@ static uint64_t HashOf(const PetscReal *point)
   return hash;
 }
 
-static PetscBool SamePlace(const PetscReal *a, const PetscReal *b)
+static PetscBool SamePoint(const PetscReal *a, const PetscReal *b)
 {
   for (PetscInt k = 0; k < 3; ++k) {
     if (a[k] != b[k] && memcmp(&a[k], &b[k], sizeof(a[k]))) return PETSC_FALSE;
@@ -33,7 +33,7 @@ static PetscBool SamePlace(const PetscReal *a, const PetscReal *b)
   return PETSC_TRUE;
 }
 
-/* EqmWeld - number points by place, in the order of their first appearance. Not collective.
+/* EqmWeld - number points by their coordinates, in the order of their first appearance. Not collective.
 
    points - 3 * num_points; afterwards the first 3 * num_distinct are the distinct ones
    number - num_points (at most PETSC_MAX_INT): the distinct point that each one is */
@@ -50,7 +50,7 @@ PetscErrorCode EqmWeld(size_t num_points, PetscReal *points, size_t *num_distinc
     const PetscReal *point = points + 3 * i;
     size_t slot = (size_t)HashOf(point) & (size - 1);
 
-    while (table[slot] && !SamePlace(points + 3 * (size_t)(table[slot] - 1), point)) slot = (slot + 1) & (size - 1);
+    while (table[slot] && !SamePoint(points + 3 * (size_t)(table[slot] - 1), point)) slot = (slot + 1) & (size - 1);
     if (!table[slot]) {
       memmove(points + 3 * count, point, 3 * sizeof(PetscReal));
       table[slot] = (PetscInt)++count;

@@ -1,4 +1,4 @@
-/* Vertices that are one because they lie at the same place. */
+/* Points of equal coordinates become one vertex. */
 #ifndef EQM_FORMAT_WELD_H
 #define EQM_FORMAT_WELD_H
 

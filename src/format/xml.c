@@ -29,7 +29,7 @@ static PetscErrorCode RejectDocument(EqmInput *in, xmlParserCtxtPtr context)
  */
 PetscErrorCode EqmXmlParse(EqmInput *in, const char *text, size_t length, xmlDocPtr *document)
 {
-  const size_t large = 10000000; /* from here on libxml2 wants to be told that a long text is meant */
+  const size_t large = 10000000; /* from here on libxml2 needs the option for long texts */
   int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_NOCDATA | XML_PARSE_BIG_LINES;
   xmlParserCtxtPtr context;
   PetscErrorCode code = 0;

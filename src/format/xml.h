@@ -1,4 +1,4 @@
-/* XML documents of mesh formats, read by libxml2 without network, entities or trust. */
+/* XML documents of mesh formats, read by libxml2 without network and without entities. */
 #ifndef EQM_FORMAT_XML_H
 #define EQM_FORMAT_XML_H
 

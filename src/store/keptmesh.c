@@ -2,7 +2,7 @@
 #include "base/checksum.h"
 #include "base/lookup.h"
 #include "base/quiet.h"
-#include "format/format.h"
+#include "format/hdf5.h"
 #include "mesh/build.h"
 #include "store/h5.h"
 #include "store/state.h"

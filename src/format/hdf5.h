@@ -1,0 +1,15 @@
+/* The mesh part of our HDF5 files, for those who read or write it by name. */
+#ifndef EQM_FORMAT_HDF5_H
+#define EQM_FORMAT_HDF5_H
+
+#include <equimap/soup.h>
+
+/* Do the bytes begin with the eight magic bytes of HDF5? Not collective. */
+PETSC_INTERN PetscBool EqmRecogniseHdf5(const char *bytes, size_t length);
+/* Read and write /mesh/vertices and /mesh/cells, each rank its slab; read its slab of /cell/density. Errors:
+   EQM_ERR_IO, EQM_ERR_MESH (no cells; not one density per cell). Collective. */
+PETSC_INTERN PetscErrorCode EqmSoupReadHdf5(MPI_Comm comm, const char *file, EqmSoup *soup);
+PETSC_INTERN PetscErrorCode EqmSoupWriteHdf5(EqmSoup soup, const char *file);
+PETSC_INTERN PetscErrorCode EqmSoupReadDensityHdf5(EqmSoup soup, const char *file, PetscReal *density);
+
+#endif
