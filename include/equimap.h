@@ -3,6 +3,7 @@
 #define EQUIMAP_H
 
 #include <equimap/base.h>
+#include <equimap/simplex.h>
 #include <equimap/soup.h>
 #include <equimap/mesh.h>
 #include <equimap/map.h>

@@ -9,6 +9,7 @@
 
 #include <petscvec.h>
 #include <equimap/mesh.h>
+#include <equimap/simplex.h>
 
 typedef enum {
   EQM_VERTEX_FREE,   /* anywhere in R^dim */
@@ -19,14 +20,6 @@ typedef enum {
   EQM_VERTEX_ANGLES, /* on the unit sphere: its spherical coordinates, polar angle and azimuth */
   EQM_VERTEX_FIXED   /* nowhere else */
 } EqmVertexKind;
-
-/* What is measured of an image simplex. */
-typedef enum {
-  EQM_MEASURE_AREA2,    /* signed area in the plane */
-  EQM_MEASURE_AREA3,    /* area of a flat triangle in space */
-  EQM_MEASURE_HALF_DET, /* half of det(p, q, r): the sign of a triangle on the sphere, and nearly its area */
-  EQM_MEASURE_VOLUME    /* signed volume of a tetrahedron */
-} EqmMeasureKind;
 
 /* A configuration: the place of every local vertex, ghosts included and up to date. */
 typedef struct {

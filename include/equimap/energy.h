@@ -59,37 +59,12 @@ PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *
 PETSC_EXTERN PetscErrorCode EqmConformalEnergy(EqmDomain domain, const PetscReal *weights, const PetscReal *mass,
                                                const EqmPlace *place, PetscReal *a, PetscReal *energy, Vec gradient);
 
-/* Weights of a Laplacian: per local cell and edge. Edge a of a triangle is opposite its corner a; the edges of a
-   tetrahedron join its corners 01, 02, 03, 12, 13, 23. */
+/* Weights of a Laplacian: per local cell and edge, in the order of EqmCellEdge. */
 typedef enum {
   EQM_LAPLACIAN_UNIFORM,   /* 1/2: every inner edge of a surface one */
   EQM_LAPLACIAN_COTANGENT, /* of the mesh: Dirichlet energy (000 L_S(id)) */
   EQM_LAPLACIAN_STRETCH    /* of the present image: L_S (000 (2d)), of solids L_V (003 (3), corrected) */
 } EqmLaplacianKind;
-/* How many edges a cell has, and which corners edge e joins. Not collective. */
-static inline PetscInt EqmCellEdges(PetscInt cell_size)
-{
-  return cell_size == 4 ? 6 : 3;
-}
-static inline void EqmCellEdge(PetscInt cell_size, PetscInt e, PetscInt *from, PetscInt *to)
-{
-  static const unsigned char ends[2][6][2] = {{{1, 2}, {2, 0}, {0, 1}},
-                                              {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-  *from = ends[cell_size == 4][e][0];
-  *to = ends[cell_size == 4][e][1];
-}
-/* The Laplacian of one cell from its edges' weights. Not collective. */
-static inline void EqmCellLaplacian(PetscInt cell_size, const PetscReal *weight, PetscReal entry[4][4])
-{
-  for (PetscInt k = 0; k < 16; k++) entry[k / 4][k % 4] = 0.;
-  for (PetscInt e = 0; e < EqmCellEdges(cell_size); e++) {
-    PetscInt a, b;
-    EqmCellEdge(cell_size, e, &a, &b);
-    entry[a][a] += weight[e];
-    entry[b][b] += weight[e];
-    entry[a][b] = entry[b][a] = -weight[e];
-  }
-}
 PETSC_EXTERN PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place,
                                                 PetscReal *weights);
 /* y = L x for `width` components; x per local vertex, y per owned vertex. Not collective. */

@@ -1,6 +1,6 @@
 /* Domains: how each kind of vertex moves. The planar ones are put together in disk.c and square.c. */
 #include "domain/domain_private.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* The frame of one vertex; returns its number of degrees of freedom. Not collective. */
 PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, PetscReal frame[9])

@@ -1,5 +1,5 @@
 #include "domain/projective.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "register/rotation.h"
 
 /* A point of the sphere as (u, v), of either formula the one that does not cancel. */

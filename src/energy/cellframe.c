@@ -1,5 +1,5 @@
 #include "energy/cellframe.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* In the ball nearly every cell is one of these. */
 static const EqmCellFrame plain = {

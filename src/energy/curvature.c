@@ -1,10 +1,10 @@
 /* First and second derivatives of a cell's image measure along the geodesics of its corners. */
 #include "energy/curvature.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* Displacements of the corners of a cell. */
 typedef struct {
-  PetscReal x[3 * EQM_MOST_CORNERS];
+  PetscReal x[3 * EQM_MAX_CORNERS];
 } Displacement;
 
 /* The displacements that a cell's degrees of freedom stand for. */
@@ -18,10 +18,10 @@ static void FindDirections(PetscInt dim, const EqmCellFrame *frame, Displacement
 
 static PetscReal Bend(EqmDomain domain, const PetscReal *const p[], const Displacement *displacement)
 {
-  const PetscReal *d[EQM_MOST_CORNERS];
+  const PetscReal *d[EQM_MAX_CORNERS];
 
   for (PetscInt a = 0; a < domain->mesh->cell_size; a++) d[a] = displacement->x + domain->dim * a;
-  return EqmMeasureBend(domain->measure, p, d);
+  return EqmMeasureSecondDerivative(domain->measure, p, d);
 }
 
 /* Straight motions first, mixed derivatives by polarisation; then what the geodesics' curvature adds. Not collective.
@@ -29,8 +29,8 @@ static PetscReal Bend(EqmDomain domain, const PetscReal *const p[], const Displa
 void EqmCellDifferentiate(EqmDomain domain, const EqmPlace *place, PetscInt cell, EqmCellDerivatives *d)
 {
   const PetscInt dim = domain->dim, corners = domain->mesh->cell_size, *const v = domain->mesh->cells + corners * cell;
-  const PetscReal *p[EQM_MOST_CORNERS];
-  PetscReal gradient[3 * EQM_MOST_CORNERS];
+  const PetscReal *p[EQM_MAX_CORNERS];
+  PetscReal gradient[3 * EQM_MAX_CORNERS];
   Displacement direction[EQM_MOST_CELL_DOFS], sum;
 
   for (PetscInt a = 0; a < corners; a++) p[a] = place->x + dim * v[a];

@@ -1,6 +1,6 @@
 /* Loops over image simplices. */
 #include <equimap/energy.h>
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "energy/loops.h"
 
 /* Run a loop compiled for its measure. To stand inside the parallel region: the compiler makes a function of its own of
@@ -19,7 +19,7 @@
 
 /* Where the corners of a cell are, in an array with `dim` reals per vertex. */
 static inline void Corners(PetscInt num_corners, PetscInt dim, const PetscInt *vertex, const PetscReal *x,
-                           const PetscReal *p[EQM_MOST_CORNERS])
+                           const PetscReal *p[EQM_MAX_CORNERS])
 {
   for (PetscInt a = 0; a < num_corners; a++) p[a] = x + dim * vertex[a];
 }
@@ -31,7 +31,7 @@ static inline __attribute__((always_inline)) void MeasureRange(EqmMeasureKind ki
   const PetscInt last = EqmRangeStart(mesh->num_local_cells, b + 1);
 
   for (PetscInt c = EqmRangeStart(mesh->num_local_cells, b); c < last; c++) {
-    const PetscReal *p[EQM_MOST_CORNERS];
+    const PetscReal *p[EQM_MAX_CORNERS];
     Corners(num_corners, dim, mesh->cells + num_corners * c, x, p);
     a[c] = EqmMeasureValue(kind, p);
   }
@@ -76,7 +76,7 @@ PetscErrorCode EqmImageBoundaryFolds(EqmDomain domain, const EqmPlace *place, Pe
   PetscFunctionBegin;
   for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
     const PetscInt *const v = mesh->boundary_facets + 3 * f;
-    const PetscReal *p[EQM_MOST_CORNERS];
+    const PetscReal *p[EQM_MAX_CORNERS];
     PetscInt lowest = v[0]; /* its owner counts the triangle */
     for (PetscInt a = 1; a < 3; a++) lowest = mesh->global[v[a]] < mesh->global[lowest] ? v[a] : lowest;
     if (lowest >= mesh->num_owned) continue;
@@ -193,7 +193,7 @@ static inline __attribute__((always_inline)) void GradientBlock(EqmMeasureKind k
   for (size_t k = 0; k < (size_t)dim * length; k++) gradient[(size_t)(dim * first) + k] = 0.;
   for (PetscInt q = mesh->block_start[b]; q < mesh->block_start[b + 1]; q++) {
     const PetscInt c = mesh->block_cell[q], *const v = mesh->cells + num_corners * c;
-    const PetscReal *p[EQM_MOST_CORNERS];
+    const PetscReal *p[EQM_MAX_CORNERS];
     PetscReal g[12];
     Corners(num_corners, dim, v, x, p);
     EqmMeasureGradient(kind, p, g);
@@ -261,7 +261,7 @@ static inline __attribute__((always_inline)) void DerivativesRange(EqmMeasureKin
 
   for (PetscInt c = EqmRangeStart(mesh->num_local_cells, b); c < last; c++) {
     const PetscInt *const v = mesh->cells + num_corners * c;
-    const PetscReal *p[EQM_MOST_CORNERS], *d[EQM_MOST_CORNERS];
+    const PetscReal *p[EQM_MAX_CORNERS], *d[EQM_MAX_CORNERS];
     PetscReal g[12], rate = 0., bend;
     Corners(num_corners, dim, v, x, p);
     Corners(num_corners, dim, v, velocity, d);
@@ -271,7 +271,7 @@ static inline __attribute__((always_inline)) void DerivativesRange(EqmMeasureKin
     }
     if (first) first[c] = rate;
     if (!second) continue;
-    bend = EqmMeasureBend(kind, p, d);
+    bend = EqmMeasureSecondDerivative(kind, p, d);
     for (PetscInt a = 0; a < num_corners && acceleration; a++) {
       for (PetscInt k = 0; k < dim; k++) bend += g[dim * a + k] * acceleration[dim * v[a] + k];
     }

@@ -1,6 +1,6 @@
 /* Laplacians by edge weights per cell: applied without a matrix, assembled in linalg. */
 #include <equimap/energy.h>
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "energy/loops.h"
 
 /* Weights of the cells first .. last-1: scale times the dot products of the edges at each corner over `measure`;
@@ -60,7 +60,7 @@ static void WeightsOfRange(EqmDomain domain, EqmLaplacianKind kind, const EqmPla
                            PetscReal *weights)
 {
   const EqmMesh mesh = domain->mesh;
-  const PetscInt edges = EqmCellEdges(mesh->cell_size);
+  const PetscInt edges = EqmCellNumEdges(mesh->cell_size);
   const PetscInt first = EqmRangeStart(mesh->num_local_cells, b), last = EqmRangeStart(mesh->num_local_cells, b + 1);
 
   if (kind == EQM_LAPLACIAN_UNIFORM) {
@@ -100,7 +100,7 @@ static inline __attribute__((always_inline)) void ApplyWidth(PetscInt corners, P
 {
   const size_t first = (size_t)mesh->block_vertex[b], length = (size_t)mesh->block_vertex[b + 1] - first;
   const size_t stride = (size_t)width;
-  const PetscInt edges = EqmCellEdges(corners);
+  const PetscInt edges = EqmCellNumEdges(corners);
 
   for (size_t k = stride * first; k < stride * (first + length); k++) y[k] = 0.;
   for (PetscInt q = mesh->block_start[b]; q < mesh->block_start[b + 1]; q++) {
@@ -149,7 +149,7 @@ PetscErrorCode EqmLaplacianApply(EqmMesh mesh, const PetscReal *weights, PetscIn
 /* 1/2 sum over edges and cells of w (x_i - x_j)^2 in one range. */
 static PetscReal EnergyRange(EqmMesh mesh, const PetscReal *weights, PetscInt width, const PetscReal *x, PetscInt b)
 {
-  const PetscInt edges = EqmCellEdges(mesh->cell_size);
+  const PetscInt edges = EqmCellNumEdges(mesh->cell_size);
   PetscReal sum = 0.;
 
   for (PetscInt c = EqmRangeStart(mesh->num_owned_cells, b); c < EqmRangeStart(mesh->num_owned_cells, b + 1); c++) {

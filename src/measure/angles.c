@@ -1,6 +1,6 @@
 /* What a map does to angles: their differences, the quasi-conformal distortion. */
 #include "measure/angles.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "measure/quantile.h"
 
 /* Angles of a triangle in degrees, corner by corner, from points of `dim` coordinates. */

@@ -1,7 +1,7 @@
 /* Distortion of a map as the papers measure it; every number from the coordinates alone. */
 #include <equimap/solver.h>
 #include <float.h>
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "measure/angles.h"
 #include "measure/quantile.h"
 

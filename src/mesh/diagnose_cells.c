@@ -1,21 +1,10 @@
 /* Cells one by one: existing, distinct and flat vertices, twins, size and quality, tetrahedra turned inside out. */
 #include "mesh/diagnose.h"
+#include "geometry/simplex.h"
 
 /* A cell of a lower quality than this is flat: rounding alone decides its measure. */
 #define EQM_FLAT_TRIANGLE    1e-13
 #define EQM_FLAT_TETRAHEDRON 1e-9
-
-static void Cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* Area of a triangle, or volume of a tetrahedron, negative if it is turned inside out. `quality` is 0 for a flat cell
    and 1 for an equilateral one: 4 sqrt(3) area / (sum of squared edges), or 12 (3 volume)^(2/3) / (sum of squared
@@ -29,20 +18,20 @@ PetscReal EqmCellMeasure(const EqmVicinity *vicinity, PetscInt cell, PetscReal *
     for (int k = 0; k < 3; k++) {
       side[a - 1][k] = vicinity->position[3 * vertex[a] + k] - vicinity->position[3 * vertex[0] + k];
     }
-    squares += Dot(side[a - 1], side[a - 1]);
+    squares += EqmDot3(side[a - 1], side[a - 1]);
     for (PetscInt b = 1; b < a; b++) {
       const PetscReal across[3] = {side[a - 1][0] - side[b - 1][0], side[a - 1][1] - side[b - 1][1],
                                    side[a - 1][2] - side[b - 1][2]};
 
-      squares += Dot(across, across);
+      squares += EqmDot3(across, across);
     }
   }
-  Cross(side[0], side[1], normal);
+  EqmCross(side[0], side[1], normal);
   if (cs == 3) {
-    measure = 0.5 * PetscSqrtReal(Dot(normal, normal));
+    measure = 0.5 * PetscSqrtReal(EqmDot3(normal, normal));
     *quality = squares > 0.0 ? 4.0 * PetscSqrtReal(3.0) * measure / squares : 0.0;
   } else {
-    const PetscReal root = PetscPowReal(PetscAbsReal(measure = Dot(normal, side[2]) / 6.0) * 3.0, 1.0 / 3.0);
+    const PetscReal root = PetscPowReal(PetscAbsReal(measure = EqmDot3(normal, side[2]) / 6.0) * 3.0, 1.0 / 3.0);
 
     *quality = squares > 0.0 ? 12.0 * root * root / squares : 0.0;
   }

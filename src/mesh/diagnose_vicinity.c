@@ -2,7 +2,7 @@
 #include "mesh/diagnose.h"
 #include "base/exchange.h"
 #include "base/rows.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* Tell whether a cell of the soup (its `cell_size` input vertex numbers) can be looked at. Not collective. */
 EqmCellUse EqmSoupCellUse(EqmSoup soup, const PetscInt *cell)

@@ -8,7 +8,7 @@
    edges with two yeses flip. */
 #include "mesh/flip.h"
 #include "base/exchange.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 typedef struct {
   PetscInt triangle, unused; /* no gap, whose bytes would travel undefined */

@@ -1,5 +1,6 @@
 /* Placements of the test shapes: from a lattice's parameters to points in space. */
-#include "generate.h"
+#include "mesh/generate.h"
+#include "geometry/simplex.h"
 
 static PetscReal Random(const EqmLatticePlan *plan, PetscInt which, PetscInt channel, PetscReal low, PetscReal high)
 {
@@ -14,11 +15,6 @@ static void RandomDirection(const EqmLatticePlan *plan, PetscInt which, PetscRea
   direction[0] = radius * PetscCosReal(angle);
   direction[1] = radius * PetscSinReal(angle);
   direction[2] = height;
-}
-
-static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* Cap of the unit sphere with an opening angle of 115 degrees from the pole, finer near the pole. */
@@ -116,7 +112,7 @@ void EqmPlaceHead(const EqmLatticePlan *plan, const PetscReal parameter[3], Pets
     const PetscReal sharp = Random(plan, bump, 2, 6.0, 40.0), tall = Random(plan, bump, 3, 0.1, 0.35);
 
     RandomDirection(plan, bump, direction);
-    radius += (bump % 3 == 2 ? -0.6 * tall : tall) * PetscExpReal(sharp * (Dot(direction, parameter) - 1.0));
+    radius += (bump % 3 == 2 ? -0.6 * tall : tall) * PetscExpReal(sharp * (EqmDot3(direction, parameter) - 1.0));
   }
   for (int k = 0; k < 3; k++) position[k] = radius * axis[k] * parameter[k];
 }
@@ -130,17 +126,17 @@ void EqmPlaceStarfish(const EqmLatticePlan *plan, const PetscReal parameter[3], 
   for (int arm = 0; arm < 5; arm++) {
     const PetscReal angle = 2.0 * PETSC_PI / 5.0 * (arm + Random(plan, arm, 0, -0.1, 0.1));
     const PetscReal axis[3] = {PetscCosReal(angle), PetscSinReal(angle), 0.0};
-    const PetscReal pull = 2.5 * PetscExpReal(8.0 * (Dot(axis, parameter) - 1.0));
+    const PetscReal pull = 2.5 * PetscExpReal(8.0 * (EqmDot3(axis, parameter) - 1.0));
 
     for (int k = 0; k < 3; k++) drawn[k] += pull * axis[k];
   }
-  norm = PetscSqrtReal(Dot(drawn, drawn));
+  norm = PetscSqrtReal(EqmDot3(drawn, drawn));
   for (int k = 0; k < 3; k++) drawn[k] /= norm;
   for (int arm = 0; arm < 5; arm++) {
     const PetscReal angle = 2.0 * PETSC_PI / 5.0 * (arm + Random(plan, arm, 0, -0.1, 0.1));
     const PetscReal axis[3] = {PetscCosReal(angle), PetscSinReal(angle), 0.0};
 
-    radius += Random(plan, arm, 1, 1.4, 2.2) * PetscExpReal(70.0 * (Dot(axis, drawn) - 1.0));
+    radius += Random(plan, arm, 1, 1.4, 2.2) * PetscExpReal(70.0 * (EqmDot3(axis, drawn) - 1.0));
   }
   for (int k = 0; k < 3; k++) position[k] = radius * drawn[k];
 }
@@ -163,7 +159,7 @@ void EqmPlaceBall(const EqmLatticePlan *plan, const PetscReal parameter[3], Pets
   for (int k = 0; k < 3; k++) {
     spread[k] = shell > 0.0 ? shell * PetscTanReal(PETSC_PI / 4.0 * parameter[k] / shell) : 0.0;
   }
-  norm = PetscSqrtReal(Dot(spread, spread));
+  norm = PetscSqrtReal(EqmDot3(spread, spread));
   for (int k = 0; k < 3; k++) {
     const PetscReal cubical = 0.65 * parameter[k], spherical = norm > 0.0 ? shell * spread[k] / norm : 0.0;
 
@@ -183,7 +179,7 @@ void EqmPlaceBlob(const EqmLatticePlan *plan, const PetscReal parameter[3], Pets
     const PetscReal tall = Random(plan, bump, 3, 0.1, 0.3);
 
     RandomDirection(plan, bump, direction);
-    radius += tall * Dot(ball, ball) * PetscExpReal(4.0 * (Dot(direction, ball) - 1.0));
+    radius += tall * EqmDot3(ball, ball) * PetscExpReal(4.0 * (EqmDot3(direction, ball) - 1.0));
   }
   for (int k = 0; k < 3; k++) ball[k] *= radius;
   x = PetscCosReal(twist * ball[2]) * ball[0] - PetscSinReal(twist * ball[2]) * ball[1];
@@ -205,7 +201,7 @@ void EqmPlaceFigure(const EqmLatticePlan *plan, const PetscReal parameter[3], Pe
   EqmPlaceBall(plan, parameter, ball);
   for (int k = 0; k < 3; k++) drawn[k] = 0.8 * ball[k];
   for (PetscInt limb = 0; limb < 5; limb++) {
-    const PetscReal along = Dot(axis[limb], ball), away = Dot(ball, ball) - along * along;
+    const PetscReal along = EqmDot3(axis[limb], ball), away = EqmDot3(ball, ball) - along * along;
     const PetscReal length = Random(plan, limb, 1, 0.9, 1.4), width = Random(plan, limb, 2, 0.33, 0.4);
 
     for (int k = 0; along > 0.0 && k < 3; k++) {

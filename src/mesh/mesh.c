@@ -1,7 +1,7 @@
 /* The distributed mesh: made from a soup, destroyed, its ghosts refreshed. */
 #include "mesh/build.h"
 #include "base/rows.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* Local numbers: the input numbers of owned vertices (sorted), then those of the ghosts. */
 static PetscErrorCode CollectVertices(const EqmStars *stars, PetscInt rank, PetscInt *num_owned, PetscInt **owned,

@@ -2,6 +2,7 @@
 #include "mesh/diagnose.h"
 #include "mesh/build.h"
 #include "mesh/generate.h"
+#include "geometry/simplex.h"
 
 /* The cell's normal, as long as twice its area. */
 static void CellNormal(const EqmVicinity *vicinity, PetscInt cell, PetscReal normal[3])
@@ -11,7 +12,7 @@ static void CellNormal(const EqmVicinity *vicinity, PetscInt cell, PetscReal nor
                          *const r = vicinity->position + 3 * v[2];
   const PetscReal a[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, b[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
 
-  for (int k = 0; k < 3; k++) normal[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+  EqmCross(a, b, normal);
 }
 
 /* A number of the standard normal distribution that belongs to the vertex, by Box and Muller. */
@@ -23,8 +24,8 @@ static PetscReal Gaussian(PetscInt seed, PetscInt vertex)
 }
 
 /* EqmSoupAddNoise - move every vertex of a surface along its normal by sigma times a random number of the standard
-   normal distribution. Sigma is a length in the mesh's own units: a scanner's noise is, and so come out the energies that
-   001 Tables 7 and 8 have for David Head.
+   normal distribution. Sigma is a length in the mesh's own units: a scanner's noise is, and so come out the energies
+   that 001 Tables 7 and 8 have for David Head.
 
    Collective. The normal is the mean of the normals around the vertex, weighted by area; a vertex without one stays.
    The numbers depend on seed and input vertex number alone: the same bits on any number of ranks. The checksum becomes

@@ -2,7 +2,7 @@
 #include "mesh/subdivide.h"
 
 /* Children by their vertices: 0 .. cs-1 the corners, then the edges in the order of EqmCellEdge. */
-static const int triangle_children[4][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}, {3, 5, 4}};
+static const int triangle_children[4][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}, {5, 3, 4}};
 static const int corner_children[4][4] = {{0, 4, 5, 6}, {4, 1, 7, 8}, {5, 7, 2, 9}, {6, 8, 9, 3}};
 /* The octahedron that the corners leave, cut along one of its diagonals: between the middles of opposite edges. */
 static const int inner_children[3][4][4] = {

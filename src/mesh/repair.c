@@ -158,7 +158,7 @@ static PetscErrorCode AddMended(PetscInt parent, const PetscInt vertex[], const 
   if (center >= 0) PetscFunctionReturn(0);
   for (int a = 0; a < list->cell_size; a++) {
     for (int b = a + 1; b < list->cell_size; b++) {
-      const PetscInt new_vertex = middle[EqmCellEdge(list->cell_size, a, b)];
+      const PetscInt new_vertex = middle[EqmCellEdgeBetween(list->cell_size, a, b)];
 
       if (new_vertex < 0) continue;
       cuts.end[cuts.num_cuts][0] = vertex[a];

@@ -46,7 +46,7 @@ static void NoteInStar(const EqmVicinity *vicinity, PetscInt v, const PetscInt *
         const PetscInt other = corner[a] == v ? corner[b] : corner[a];
 
         if ((corner[a] != v && corner[b] != v) || fresh[other] < 0) continue;
-        edge_vertex[num_edges * cell + EqmCellEdge(cs, a, b)] = fresh[other];
+        edge_vertex[num_edges * cell + EqmCellEdgeBetween(cs, a, b)] = fresh[other];
       }
     }
   }

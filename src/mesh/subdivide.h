@@ -2,6 +2,7 @@
 #ifndef EQM_SUBDIVIDE_H
 #define EQM_SUBDIVIDE_H
 
+#include <equimap/simplex.h>
 #include "mesh/diagnose.h"
 
 /* Vertices of one origin, held by the ranks in order of their numbers. */
@@ -17,19 +18,6 @@ typedef struct {
   PetscInt cell_size, count, capacity;
   PetscInt *records;
 } EqmCellList;
-
-#define EQM_MAX_CELL_EDGES 6
-
-/* Edges of a cell are counted (0,1), (0,2), .., (1,2), ..: place of the edge between corners a < b. */
-static inline int EqmCellEdge(PetscInt cell_size, int a, int b)
-{
-  return (int)(a * (2 * cell_size - a - 1) / 2) + b - a - 1;
-}
-
-static inline int EqmCellNumEdges(PetscInt cell_size)
-{
-  return cell_size == 3 ? 3 : EQM_MAX_CELL_EDGES;
-}
 
 PETSC_INTERN PetscErrorCode EqmEdgesNumber(const EqmVicinity *vicinity, const PetscBool *on_boundary,
                                            EqmVertexGroup *midpoints, PetscInt *edge_vertex);

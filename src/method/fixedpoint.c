@@ -16,7 +16,7 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscFunctionBegin;
   PetscCall(PetscNew(&fp));
   solver->data = fp;
-  PetscCall(PetscMalloc4(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &fp->weights, 2 * mesh->num_owned,
+  PetscCall(PetscMalloc4(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &fp->weights, 2 * mesh->num_owned,
                          &fp->columns, 2 * mesh->num_local, &fp->inverted, mesh->num_local, &fp->group));
   for (PetscInt v = 0; v < mesh->num_local; v++) fp->group[v] = mesh->on_boundary[v] ? 1 : 0;
   PetscCall(EqmPlaceCreate(solver->domain, &fp->to));

@@ -1,5 +1,5 @@
 #include "method/flow.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 PetscErrorCode EqmFlowLaplacian(EqmSolver solver, const EqmPlace *place, PetscReal *af, PetscReal *normal)
 {

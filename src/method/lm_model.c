@@ -1,6 +1,6 @@
 /* The Gauss-Newton model at the present map: matrix, right-hand sides, step and bend. */
 #include "method/lm.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* d rho and (sphere, else zero) d q by each degree of freedom of a cell. */
 static inline void CellGradients(EqmSolver solver, PetscInt cell, const EqmCellFrame *frame, PetscReal of_rho[6],
@@ -10,7 +10,7 @@ static inline void CellGradients(EqmSolver solver, PetscInt cell, const EqmCellF
   const EqmDomain domain = solver->domain;
   const PetscInt *const v = solver->mesh->cells + 3 * cell, dim = domain->dim;
   const PetscReal *const x = lm->now.place.x, *const p[] = {x + dim * v[0], x + dim * v[1], x + dim * v[2]};
-  PetscReal area[3 * EQM_MOST_CORNERS], det[3 * EQM_MOST_CORNERS];
+  PetscReal area[3 * EQM_MAX_CORNERS], det[3 * EQM_MAX_CORNERS];
 
   EqmMeasureGradient(domain->measure, p, area);
   if (lm->kappa > 0.) EqmMeasureGradient(EQM_MEASURE_HALF_DET, p, det);

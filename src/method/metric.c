@@ -5,7 +5,7 @@
    compression and soft for everything else: there the metric is the Gauss-Newton matrix with a little of L_V, coupled
    over all coordinates (docs/methods.md, Solids). */
 #include "method/method.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "unfold/barrier.h"
 
 struct _p_EqmMetric {
@@ -46,7 +46,7 @@ PetscErrorCode EqmMetricCreate(EqmSolver solver, EqmMetric *out)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&metric));
-  PetscCall(PetscMalloc1(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &metric->weights));
+  PetscCall(PetscMalloc1(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &metric->weights));
   PetscCall(EqmPlaceCreate(solver->domain, &metric->at));
   if (NeedsGaussNewton(solver->domain)) {
     PetscCall(EqmPlaceCreate(solver->domain, &metric->coarse_at));

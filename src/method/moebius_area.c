@@ -1,7 +1,7 @@
 /* The Mobius map that leaves least area distortion: three parameters, the shift's, by a quasi-Newton method. */
 #include "method/objective.h"
 #include "method/method.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 typedef struct {
   EqmSolver solver;

@@ -28,9 +28,9 @@ static PetscErrorCode SetUp(EqmSolver solver)
   solver->data = newton;
   newton->mu = 1e-2;
   PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_COUPLED, &newton->linear));
-  PetscCall(PetscMalloc4(mesh->num_local_cells, &newton->slope, EqmCellEdges(mesh->cell_size) * mesh->num_local_cells,
-                         &newton->weights, mesh->num_local_cells, &newton->image, domain->dim * mesh->num_local,
-                         &newton->velocity));
+  PetscCall(PetscMalloc4(mesh->num_local_cells, &newton->slope,
+                         EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &newton->weights,
+                         mesh->num_local_cells, &newton->image, domain->dim * mesh->num_local, &newton->velocity));
   PetscCall(EqmPlaceCreate(domain, &newton->trial));
   PetscCall(EqmDomainCreateVec(domain, &newton->gradient));
   PetscCall(VecDuplicate(newton->gradient, &newton->trial_gradient));
@@ -65,7 +65,7 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
   EqmCellDerivatives d;
 
   EqmCellDifferentiate(solver->domain, &solver->place, cell, &d);
-  EqmCellLaplacian(mesh->cell_size, newton->weights + EqmCellEdges(mesh->cell_size) * cell, laplacian);
+  EqmCellLaplacian(mesh->cell_size, newton->weights + EqmCellNumEdges(mesh->cell_size) * cell, laplacian);
   for (PetscInt a = 0; a < mesh->cell_size; a++) laplacian[a][a] *= 1. + diagonal_share;
   for (PetscInt i = 0; i < d.frame.count; i++) {
     for (PetscInt j = 0; j < d.frame.count; j++)

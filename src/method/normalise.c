@@ -2,7 +2,7 @@
    middle; three vertices at given places; least area distortion; or landmarks near given places. */
 #include "method/method.h"
 #include "domain/projective.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "register/landmark_list.h"
 
 typedef enum { MOEBIUS_CENTER, MOEBIUS_AREA } Choice;

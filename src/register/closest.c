@@ -1,6 +1,6 @@
 /* Closest points of triangles and tetrahedra. */
 #include "register/closest.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* Where the foot of y on the segment from a to b lies, 0 ... 1. */
 static PetscReal AlongSegment(const PetscReal y[3], const PetscReal *a, const PetscReal *b)

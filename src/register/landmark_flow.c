@@ -4,7 +4,7 @@
    derivatives at the landmarks. In the disk k carries the factors 1 - |x|^2, so that psi is constant along the circle
    and nothing leaves. */
 #include "register/landmark_flow.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include <petscmat.h>
 
 enum { LEAST_STEPS = 12, CORRECTIONS = 4 };

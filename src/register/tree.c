@@ -1,7 +1,7 @@
 /* A balanced tree of axis-parallel boxes: made by halving the cells along the longest side, searched nearest box first.
  */
 #include "register/tree.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include <math.h>
 
 enum { LEAF = 4, MOST_LEVELS = 40 };

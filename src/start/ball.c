@@ -1,7 +1,7 @@
 /* First maps of solids to the ball (003 section 4): the surface goes to the sphere by the sphere's own solver, the
    interior follows by volumetric stretch energy minimisation with the boundary held. */
 #include "method/method.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* Mean and covariance of the vertices' places (003 (12)). */
 static PetscErrorCode Moments(EqmMesh mesh, PetscReal center[3], PetscReal covariance[9])

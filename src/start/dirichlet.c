@@ -11,7 +11,7 @@ typedef struct {
 static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
 {
   const GroupMatrix *const g = context;
-  const PetscInt n = g->mesh->cell_size, edges = EqmCellEdges(n), *const v = g->mesh->cells + n * cell;
+  const PetscInt n = g->mesh->cell_size, edges = EqmCellNumEdges(n), *const v = g->mesh->cells + n * cell;
 
   for (PetscInt k = 0; k < n * n; k++) matrix[k] = 0.;
   for (PetscInt a = 0; a < n && g->mass; a++) matrix[(n + 1) * a] = g->mass[cell] / (PetscReal)n;

@@ -1,7 +1,7 @@
 /* The Gauss map: each vertex goes to its normal (004 Definition 5.1). Hollows fold; a few steps of heat flow on the
    sphere smooth that away. */
 #include "method/method.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* Time step of the smoothing for a surface of area one; the sphere's slowest modes decay at rate 8 pi. */
 #define TIME_STEP .01

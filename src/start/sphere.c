@@ -1,6 +1,6 @@
 /* First maps to the sphere. */
 #include "method/method.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "measure/quantile.h"
 
 /* Points of the plane (two reals per vertex) and of the sphere, seen from the pole `up` = +1 (north) or -1. */

@@ -2,7 +2,7 @@
    round it is made a mean-value map of its rim, which straightens what it can, and so on with the next. Caps alternate
    between large and small. */
 #include "method/method.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 enum { MOST_ROUNDS = 40 };
 #define SHORTEST 1e-12

@@ -1,7 +1,7 @@
 /* Whole runs of angle-preserving maps of closed surfaces: small angle errors without folds, the sphere itself, the same
    map on any number of ranks, the same bits for any number of threads. */
 #include "support/runs.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* Converged, no folds, small angle errors, few factorisations. */
 static PetscErrorCode TestMethod(const char *shape, PetscInt n, const char *options, PetscReal degrees)

@@ -1,6 +1,6 @@
 /* The conformal energy on the sphere against differences, its lower bound, and the step limit of its objective. */
 #include "support/testing.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 typedef struct {
   TestMesh test;

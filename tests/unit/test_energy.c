@@ -25,8 +25,8 @@ static PetscErrorCode Stretch(EqmDomain domain, const EqmPlace *place, PetscReal
   PetscReal *weights, *ambient;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &weights, domain->dim * mesh->num_owned,
-                         &ambient));
+  PetscCall(PetscMalloc2(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &weights,
+                         domain->dim * mesh->num_owned, &ambient));
   PetscCall(EqmLaplacianWeights(domain, EQM_LAPLACIAN_STRETCH, place, weights));
   PetscCall(EqmLaplacianEnergy(mesh, weights, domain->dim, place->x, value));
   if (gradient) {
@@ -45,8 +45,8 @@ static PetscErrorCode Dirichlet(EqmDomain domain, const EqmPlace *place, PetscRe
   PetscReal *weights, *ambient;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &weights, domain->dim * mesh->num_owned,
-                         &ambient));
+  PetscCall(PetscMalloc2(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &weights,
+                         domain->dim * mesh->num_owned, &ambient));
   PetscCall(EqmLaplacianWeights(domain, EQM_LAPLACIAN_COTANGENT, NULL, weights));
   PetscCall(EqmLaplacianEnergy(mesh, weights, domain->dim, place->x, value));
   if (gradient) {
@@ -167,7 +167,7 @@ static PetscErrorCode TestLaplacian(EqmDomain domain, EqmLaplacianKind kind, con
   PetscReal *weights, *x, *y, product[2] = {0., 0.}, energy, half = 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &weights, 3 * mesh->num_local, &x,
+  PetscCall(PetscMalloc3(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &weights, 3 * mesh->num_local, &x,
                          3 * mesh->num_owned, &y));
   PetscCall(EqmLaplacianWeights(domain, kind, place, weights));
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
@@ -241,7 +241,7 @@ static PetscErrorCode TestStretchGradient(EqmDomain domain, const EqmPlace *plac
   PetscReal *weights, *a, *by_matrix, *by_cells, largest = 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(EqmCellEdges(mesh->cell_size) * mesh->num_local_cells, &weights, mesh->num_local_cells, &a,
+  PetscCall(PetscMalloc4(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &weights, mesh->num_local_cells, &a,
                          domain->dim * mesh->num_owned, &by_matrix, domain->dim * mesh->num_owned, &by_cells));
   PetscCall(EqmLaplacianWeights(domain, EQM_LAPLACIAN_STRETCH, place, weights));
   PetscCall(EqmLaplacianApply(mesh, weights, domain->dim, place->x, by_matrix));

@@ -1,7 +1,7 @@
 /* The heat flow of harmonic maps and the implicit Euler method's system (004 (7), (8), Appendix); matrices that are not
    positive definite. */
 #include "support/testing.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include "method/flow.h"
 
 typedef struct {

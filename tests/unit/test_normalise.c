@@ -1,7 +1,7 @@
 /* Mobius maps as matrices, and the choices of one at the end of an angle-preserving map. */
 #include "support/runs.h"
 #include "domain/projective.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 #include <unistd.h>
 
 static PetscReal Distance(const PetscReal *p, const PetscReal *q)

@@ -1,7 +1,7 @@
 /* The sphere: moves and frames, the two measures of image triangles and the energy against differences along geodesics,
    the formulas of Sutti and Yueh (sphere, "001") as they must read, unfolding. */
 #include "support/testing.h"
-#include "energy/kernel.h"
+#include "geometry/simplex.h"
 
 /* A map to the sphere that is far from area-preserving and does not fold. */
 typedef struct {
@@ -314,7 +314,7 @@ static void TestAppendixB(PetscInt seed)
   const PetscReal *const corner[] = {f, f + 3, f + 6}, *const velocity[] = {d, d + 3, d + 6};
   EqmMeasureGradient(EQM_MEASURE_AREA3, corner, g);
   for (PetscInt k = 0; k < 9; k++) along += g[k] * d[k];
-  const PetscReal bend = EqmMeasureBend(EQM_MEASURE_AREA3, corner, velocity);
+  const PetscReal bend = EqmMeasureSecondDerivative(EQM_MEASURE_AREA3, corner, velocity);
   CHECK_CLOSE(2. * (along * along + EqmArea3(f, f + 3, f + 6) * bend), form, 1e-12, 1. + PetscAbsReal(form));
 }
 

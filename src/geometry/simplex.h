@@ -1,8 +1,9 @@
-/* Measures of image simplices and their derivatives: the innermost functions of every loop over cells. */
-#ifndef EQM_KERNEL_H
-#define EQM_KERNEL_H
+/* Geometry of one simplex: products of vectors, areas and volumes with their derivatives; the innermost functions of
+   every loop over cells. Knows no mesh: below all other folders but base. */
+#ifndef EQM_SIMPLEX_H
+#define EQM_SIMPLEX_H
 
-#include <equimap/domain.h>
+#include <equimap/simplex.h>
 
 /* A point of the plane in one register: both coordinates are added and scaled at once. */
 typedef PetscReal EqmPoint2 __attribute__((vector_size(2 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
@@ -76,9 +77,9 @@ static inline PetscReal EqmHalfDet(const PetscReal *p, const PetscReal *q, const
 }
 
 /* ---- one interface to the measures: value, gradient by corner and coordinate, second derivative along straight
-   motions; `p` are the corners' places, `d` their velocities. `kind` is a constant wherever these are called, so that
-   each loop is compiled for its measure. */
-enum { EQM_MOST_CORNERS = 4 };
+   motions; `p` are the corners' positions, `d` their velocities. `kind` is a constant wherever these are called, so
+   that each loop is compiled for its measure. */
+enum { EQM_MAX_CORNERS = 4 };
 
 static inline PetscInt EqmMeasureDim(EqmMeasureKind kind)
 {
@@ -158,7 +159,7 @@ static inline PetscReal EqmDet3(const PetscReal u[3], const PetscReal v[3], cons
 }
 
 /* The volume is a third of a cubic form of the edges: its second derivative has one term per pair of moving edges. */
-static inline PetscReal EqmVolumeBend(const PetscReal *const p[], const PetscReal *const d[])
+static inline PetscReal EqmVolumeSecondDerivative(const PetscReal *const p[], const PetscReal *const d[])
 {
   PetscReal e[3][3], f[3][3];
 
@@ -168,10 +169,11 @@ static inline PetscReal EqmVolumeBend(const PetscReal *const p[], const PetscRea
 }
 
 /* d2/dt2 of the measure of p + t d at t = 0. */
-static inline PetscReal EqmMeasureBend(EqmMeasureKind kind, const PetscReal *const p[], const PetscReal *const d[])
+static inline PetscReal EqmMeasureSecondDerivative(EqmMeasureKind kind, const PetscReal *const p[],
+                                                   const PetscReal *const d[])
 {
   if (kind == EQM_MEASURE_AREA2) return 2. * EqmArea2(d[0], d[1], d[2]); /* the area is quadratic */
-  if (kind == EQM_MEASURE_VOLUME) return EqmVolumeBend(p, d);
+  if (kind == EQM_MEASURE_VOLUME) return EqmVolumeSecondDerivative(p, d);
   if (kind == EQM_MEASURE_HALF_DET)
     return 2. * (EqmHalfDet(d[0], d[1], p[2]) + EqmHalfDet(d[0], p[1], d[2]) + EqmHalfDet(p[0], d[1], d[2]));
   /* a = |N|/2, N = N0 + t N1 + t^2 N2 */
