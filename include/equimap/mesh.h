@@ -27,11 +27,11 @@ struct _p_EqmMesh {
   PetscInt *cells; /* cell_size * num_local_cells, local vertex numbers; triangles turn as in the file, the volume of
                               tetrahedra is positive */
 
-  PetscReal *position;    /* 3 * num_local: the surface or solid itself */
-  PetscReal *weight;      /* per local cell: measure times density, sum over owned cells of all ranks = 1 */
-  PetscReal *shape;       /* per local cell: measure alone, in the mesh's own units */
-  PetscReal *edge_length; /* per local cell and corner, of the edge opposite; NULL: edges are straight in space */
-  PetscReal measure;      /* W: total measure, density included, in the mesh's own units */
+  PetscReal *position;     /* 3 * num_local: the surface or solid itself */
+  PetscReal *weight;       /* per local cell: measure times density, sum over owned cells of all ranks = 1 */
+  PetscReal *cell_measure; /* per local cell: measure alone, in the mesh's own units */
+  PetscReal *edge_length;  /* per local cell and corner, of the edge opposite; NULL: edges are straight in space */
+  PetscReal measure;       /* W: total measure, density included, in the mesh's own units */
 
   /* Boundary. Of surfaces: edges that run with the surface on their left; of solids: triangles that look outward. */
   PetscInt num_boundary_vertices; /* global */

@@ -105,7 +105,14 @@ typedef struct {
   PetscInt where[EQM_FINDING_SHOWN][4]; /* vertex or cell numbers in input numbering, -1 where unused */
 } EqmFinding;
 
-typedef enum { EQM_SHAPE_DISK, EQM_SHAPE_SPHERE, EQM_SHAPE_BALL, EQM_SHAPE_OTHER } EqmTopology;
+/* What a mesh is, as far as maps are concerned. */
+typedef enum {
+  EQM_TOPOLOGY_DISK,   /* surface: one piece, one boundary loop, no handle */
+  EQM_TOPOLOGY_SPHERE, /* surface: one piece, closed, no handle */
+  EQM_TOPOLOGY_BALL,   /* solid: one piece, one boundary surface, no tunnel */
+  EQM_TOPOLOGY_OTHER,
+  EQM_NUM_TOPOLOGIES
+} EqmTopology;
 
 typedef struct {
   PetscInt cell_size; /* 3 triangles, 4 tetrahedra */

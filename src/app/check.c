@@ -2,11 +2,10 @@
 #include "app.h"
 #include "base/atomicfile.h"
 #include "intake/intake.h"
+#include "mesh/target.h"
 #include <cjson/cJSON.h>
 
-#define EQM_NUM_TARGETS 5
-static const char *const targets[EQM_NUM_TARGETS] = {"disk", "square", "sphere", "ball", "conformal"};
-static const char *const topology_names[] = {"disk", "sphere", "ball", "other"};
+enum { MAX_TARGETS = 16 };
 static const char *const finding_names[EQM_NUM_FINDINGS] = {"not_finite",
                                                             "bad_index",
                                                             "unreferenced_vertex",
@@ -34,7 +33,9 @@ typedef struct {
 
 typedef struct {
   EqmDiagnosis diagnosis;
-  PetscBool repaired, takes[EQM_NUM_TARGETS];
+  const EqmTarget *targets;
+  PetscInt num_targets;
+  PetscBool repaired, takes[MAX_TARGETS];
   EqmRepair repair;
   const char *file;
   EqmStatus status;
@@ -110,11 +111,13 @@ static PetscErrorCode PrintVerdicts(CheckReport *report)
   PetscCall(EqmDiagnosisDescribe(&report->diagnosis, NULL, &fatal, text, sizeof(text)));
   PetscCall(PrintLines("  ", text, PETSC_FALSE));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "commands\n"));
-  for (int t = 0; t < EQM_NUM_TARGETS; t++) {
-    PetscCall(EqmDiagnosisDescribe(&report->diagnosis, targets[t], &fatal, text, sizeof(text)));
+  EqmTargetsGet(&report->targets, &report->num_targets);
+  PetscCheck(report->num_targets <= MAX_TARGETS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "make MAX_TARGETS larger");
+  for (PetscInt t = 0; t < report->num_targets; t++) {
+    PetscCall(EqmDiagnosisDescribe(&report->diagnosis, report->targets[t].name, &fatal, text, sizeof(text)));
     report->takes[t] = (PetscBool)!fatal;
     if (!fatal) report->status = EQM_STATUS_CONVERGED;
-    PetscCall(PetscSNPrintf(head, sizeof(head), "  %-10s%s", targets[t], fatal ? "no   " : "yes  "));
+    PetscCall(PetscSNPrintf(head, sizeof(head), "  %-10s%s", report->targets[t].name, fatal ? "no   " : "yes  "));
     PetscCall(PrintLines(head, strchr(text, ' ') + 1, PETSC_TRUE)); /* "error: " and "good: " are yes and no already */
   }
   PetscFunctionReturn(0);
@@ -160,7 +163,7 @@ static void AddMesh(const CheckReport *report, cJSON *parent)
   cJSON_AddNumberToObject(mesh, "boundary_loops", (double)d->num_boundary_loops);
   cJSON_AddNumberToObject(mesh, "euler_characteristic", (double)d->euler_characteristic);
   cJSON_AddNumberToObject(mesh, "genus", (double)d->genus);
-  cJSON_AddStringToObject(mesh, "topology", topology_names[d->topology]);
+  cJSON_AddStringToObject(mesh, "topology", EqmTopologyName(d->topology));
   cJSON_AddNumberToObject(mesh, "measure", d->measure);
   cJSON_AddNumberToObject(mesh, "smallest_cell", d->smallest_cell);
   cJSON_AddNumberToObject(mesh, "largest_cell", d->largest_cell);
@@ -181,7 +184,9 @@ static char *MakeSummary(const CheckReport *report, const char *message)
   AddMesh(report, root);
   AddFindings(&report->diagnosis, root);
   group = cJSON_AddObjectToObject(root, "commands");
-  for (int t = 0; t < EQM_NUM_TARGETS; t++) cJSON_AddBoolToObject(group, targets[t], report->takes[t]);
+  for (PetscInt t = 0; t < report->num_targets; t++) {
+    cJSON_AddBoolToObject(group, report->targets[t].name, report->takes[t]);
+  }
   if (report->repaired) {
     group = cJSON_AddObjectToObject(root, "repair");
     cJSON_AddNumberToObject(group, "duplicate_cells_removed", (double)report->repair.duplicate_cells_removed);

@@ -67,13 +67,13 @@ static void WeightsOfRange(EqmDomain domain, EqmLaplacianKind kind, const EqmPla
     for (PetscInt k = edges * first; k < edges * last; k++) weights[k] = .5;
   } else if (mesh->cell_size == 4) {
     if (kind == EQM_LAPLACIAN_COTANGENT)
-      VolumeWeights(mesh, 1., mesh->position, mesh->shape, first, last, weights);
+      VolumeWeights(mesh, 1., mesh->position, mesh->cell_measure, first, last, weights);
     else
       VolumeWeights(mesh, 2. / 3., place->x, mesh->weight, first, last, weights);
   } else if (kind == EQM_LAPLACIAN_COTANGENT && mesh->edge_length) {
-    WeightsOfLengths(mesh->edge_length, mesh->shape, first, last, weights);
+    WeightsOfLengths(mesh->edge_length, mesh->cell_measure, first, last, weights);
   } else if (kind == EQM_LAPLACIAN_COTANGENT) {
-    DotWeights(3, mesh->cells, mesh->position, mesh->shape, first, last, weights);
+    DotWeights(3, mesh->cells, mesh->position, mesh->cell_measure, first, last, weights);
   } else if (domain->dim == 2) {
     DotWeights(2, mesh->cells, place->x, mesh->weight, first, last, weights);
   } else {

@@ -1,5 +1,6 @@
 /* The mesh that a run is given: read, mended if asked, refused if it cannot be mapped. */
 #include "intake/intake.h"
+#include "mesh/target.h"
 #include "store/keptmesh.h"
 #include <string.h>
 
@@ -53,14 +54,14 @@ static PetscErrorCode Mend(EqmIntake *intake)
 /* Look at what would be mapped: its topology, the target that was asked for or that it asks for, what is wrong. */
 static PetscErrorCode Diagnose(const char *wanted, EqmIntake *intake, PetscBool *fatal, char *text, size_t length)
 {
-  static const char *const targets[] = {
-      [EQM_SHAPE_DISK] = "disk", [EQM_SHAPE_SPHERE] = "sphere", [EQM_SHAPE_BALL] = "ball", [EQM_SHAPE_OTHER] = NULL};
+  const EqmTarget *natural;
   EqmDiagnosis diagnosis;
 
   PetscFunctionBegin;
   PetscCall(EqmSoupDiagnose(intake->mapped, &diagnosis));
   intake->topology = diagnosis.topology;
-  intake->target = wanted ? wanted : targets[diagnosis.topology];
+  natural = EqmTargetOfTopology(diagnosis.topology);
+  intake->target = wanted || !natural ? wanted : natural->name;
   PetscCall(EqmDiagnosisDescribe(&diagnosis, intake->target, fatal, text, length));
   if (!intake->target) *fatal = PETSC_TRUE;
   PetscFunctionReturn(0);

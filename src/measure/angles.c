@@ -81,7 +81,7 @@ static PetscErrorCode MeasureQuasiConformal(EqmMap map, EqmMesh mesh, const Pets
     const PetscReal *p[3] = {mesh->position + 3 * v[0], mesh->position + 3 * v[1], mesh->position + 3 * v[2]};
     const PetscReal *q[3] = {x + dim * v[0], x + dim * v[1], x + dim * v[2]};
     const PetscReal area = dim == 2 ? PetscAbsReal(EqmArea2(q[0], q[1], q[2])) : EqmArea3(q[0], q[1], q[2]);
-    distortion[c] = QuasiConformal(dim, p, q, mesh->shape[c], area);
+    distortion[c] = QuasiConformal(dim, p, q, mesh->cell_measure[c], area);
   }
   PetscCall(EqmMeshCellsToInput(mesh, map->soup, 1, distortion, map->quasi_conformal));
   PetscCall(EqmStatisticsOf(mesh->comm, n, distortion, &map->distortion.quasiconformal));

@@ -61,11 +61,11 @@ static PetscErrorCode StoreConformalFactor(EqmMap map, EqmMesh mesh, const Petsc
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
     for (PetscInt k = 0; k < 3; k++) {
       sum[2 * mesh->cells[3 * c + k]] += PetscAbsReal(a[c]);
-      sum[2 * mesh->cells[3 * c + k] + 1] += mesh->shape[c];
+      sum[2 * mesh->cells[3 * c + k] + 1] += mesh->cell_measure[c];
     }
     if (c >= mesh->num_owned_cells) continue;
     total[0] += PetscAbsReal(a[c]);
-    total[1] += mesh->shape[c];
+    total[1] += mesh->cell_measure[c];
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, total, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (PetscInt v = 0; v < mesh->num_owned; v++) { /* a flattened star: finite all the same */

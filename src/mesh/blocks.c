@@ -48,16 +48,16 @@ PetscErrorCode EqmMeshMeasure(EqmMesh mesh, const PetscReal *cell_density)
   PetscReal sum = 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(mesh->num_local_cells, &mesh->shape));
+  PetscCall(PetscMalloc1(mesh->num_local_cells, &mesh->cell_measure));
   PetscCall(PetscMalloc1(mesh->num_local_cells, &mesh->weight));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
     const PetscInt *const v = mesh->cells + mesh->cell_size * c;
     const PetscReal *const p = mesh->position;
-    mesh->shape[c] = mesh->edge_length ? EqmAreaOfLengths(mesh->edge_length + 3 * c)
-                     : mesh->cell_size == 3
-                         ? EqmArea3(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2])
-                         : PetscAbsReal(EqmVolume(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2], p + 3 * v[3]));
-    mesh->weight[c] = mesh->shape[c] * (cell_density ? cell_density[c] : 1.);
+    mesh->cell_measure[c] = mesh->edge_length ? EqmAreaOfLengths(mesh->edge_length + 3 * c)
+                            : mesh->cell_size == 3
+                                ? EqmArea3(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2])
+                                : PetscAbsReal(EqmVolume(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2], p + 3 * v[3]));
+    mesh->weight[c] = mesh->cell_measure[c] * (cell_density ? cell_density[c] : 1.);
     if (c < mesh->num_owned_cells) sum += mesh->weight[c];
   }
   PetscCall(MPIU_Allreduce(&sum, &mesh->measure, 1, MPIU_REAL, MPIU_SUM, mesh->comm));

@@ -1,5 +1,5 @@
 /* What a diagnosis means for a command, in words: what is wrong, where, how often, what to do. */
-#include <equimap/soup.h>
+#include "mesh/target.h"
 
 /* Who minds a finding. */
 typedef enum { MINDED_BY_ALL, MINDED_BY_NONE, MINDED_BY_DISK, MINDED_BY_SPHERE } Minded;
@@ -84,23 +84,16 @@ static const Phrase phrases[] = {
      "{n} interior edges join two boundary vertices", "such edges can fold the map; -repair splits them"},
 };
 
-/* The kinds of surfaces and solids that a target takes. */
-static PetscErrorCode TargetTakes(const char *target, PetscBool takes[EQM_SHAPE_OTHER + 1])
+/* The topologies that a target takes; without one, those that any target takes. */
+static PetscErrorCode TargetTakes(const char *name, PetscBool takes[EQM_NUM_TOPOLOGIES])
 {
-  PetscBool disk, square, sphere, ball, conformal;
+  const EqmTarget *const target = name ? EqmTargetFind(name) : NULL;
 
   PetscFunctionBegin;
-  PetscCall(PetscStrcmp(target, "disk", &disk));
-  PetscCall(PetscStrcmp(target, "square", &square));
-  PetscCall(PetscStrcmp(target, "sphere", &sphere));
-  PetscCall(PetscStrcmp(target, "ball", &ball));
-  PetscCall(PetscStrcmp(target, "conformal", &conformal));
-  takes[EQM_SHAPE_DISK] = (PetscBool)(!target || disk || square || conformal);
-  takes[EQM_SHAPE_SPHERE] = (PetscBool)(!target || sphere || conformal);
-  takes[EQM_SHAPE_BALL] = (PetscBool)(!target || ball);
-  takes[EQM_SHAPE_OTHER] = PETSC_FALSE;
-  PetscCheck(takes[EQM_SHAPE_DISK] || takes[EQM_SHAPE_SPHERE] || takes[EQM_SHAPE_BALL], PETSC_COMM_SELF,
-             PETSC_ERR_ARG_OUTOFRANGE, "There is no target '%s'", target);
+  PetscCheck(target || !name, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "There is no target '%s'", name);
+  for (int t = 0; t < EQM_NUM_TOPOLOGIES; t++) {
+    takes[t] = (PetscBool)(target ? target->domain[t] != NULL : EqmTargetOfTopology((EqmTopology)t) != NULL);
+  }
   PetscFunctionReturn(0);
 }
 
@@ -171,9 +164,9 @@ static PetscBool IsMinded(const Phrase *phrase, const char *target, const PetscB
   case MINDED_BY_ALL:
     return PETSC_TRUE;
   case MINDED_BY_DISK:
-    return (PetscBool)(takes[EQM_SHAPE_DISK] && (phrase->kind != EQM_FINDING_CLOSED || !takes[EQM_SHAPE_SPHERE]));
+    return (PetscBool)(takes[EQM_TOPOLOGY_DISK] && (phrase->kind != EQM_FINDING_CLOSED || !takes[EQM_TOPOLOGY_SPHERE]));
   case MINDED_BY_SPHERE:
-    return (PetscBool)(target && takes[EQM_SHAPE_SPHERE] && !takes[EQM_SHAPE_DISK]);
+    return (PetscBool)(target && takes[EQM_TOPOLOGY_SPHERE] && !takes[EQM_TOPOLOGY_DISK]);
   default:
     return PETSC_FALSE;
   }
@@ -209,8 +202,8 @@ static PetscErrorCode AppendFindings(const EqmDiagnosis *diagnosis, const char *
 static PetscErrorCode AppendWrongCells(const EqmDiagnosis *diagnosis, const PetscBool takes[], PetscInt *count,
                                        char *text, size_t length)
 {
-  const PetscBool wants_solid = (PetscBool)(takes[EQM_SHAPE_BALL] && !takes[EQM_SHAPE_DISK]);
-  const PetscBool wants_surface = (PetscBool)!takes[EQM_SHAPE_BALL];
+  const PetscBool wants_solid = (PetscBool)(takes[EQM_TOPOLOGY_BALL] && !takes[EQM_TOPOLOGY_DISK]);
+  const PetscBool wants_surface = (PetscBool)!takes[EQM_TOPOLOGY_BALL];
   const char *line = NULL;
 
   PetscFunctionBegin;
@@ -245,28 +238,25 @@ static PetscErrorCode AppendMisfit(const EqmDiagnosis *diagnosis, const PetscBoo
 
 static PetscErrorCode AppendGoodNews(const EqmDiagnosis *diagnosis, const char *target, char *text, size_t length)
 {
-  static const char *const kind[] = {"a disk-type surface (one piece, one boundary loop, no handle)",
-                                     "a closed surface without handles",
-                                     "a solid ball (one piece, one boundary surface)"};
   char line[256];
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(line, sizeof(line), "%s of %" PetscInt64_FMT " vertices and %" PetscInt64_FMT " %s%s%s",
-                          kind[diagnosis->topology], diagnosis->num_vertices, diagnosis->num_cells,
+                          EqmTopologyDescription(diagnosis->topology), diagnosis->num_vertices, diagnosis->num_cells,
                           diagnosis->cell_size == 4 ? "tetrahedra" : "triangles", target ? ", ready for " : "",
                           target ? target : ""));
   PetscCall(AppendLine("good: ", line, text, length));
   PetscFunctionReturn(0);
 }
 
-/* Say what a diagnosis means for a target: "disk", "square", "sphere", "ball", "conformal", or NULL for any of them.
+/* Say what a diagnosis means for a target, by its name in the table of targets, or NULL for any of them.
    `text` (of `length` bytes, cut short if that is not enough) gets a line per finding, the fatal ones first, without a
    newline at the end; or good news and warnings. `fatal` tells whether the target's map is out of the question. Not
    collective; gives the same on every rank. Errors: PETSC_ERR_ARG_OUTOFRANGE (no such target). */
 PetscErrorCode EqmDiagnosisDescribe(const EqmDiagnosis *diagnosis, const char *target, PetscBool *fatal, char *text,
                                     size_t length)
 {
-  PetscBool takes[EQM_SHAPE_OTHER + 1];
+  PetscBool takes[EQM_NUM_TOPOLOGIES];
   PetscInt num_fatal = 0, num_warnings = 0;
 
   PetscFunctionBegin;

@@ -175,13 +175,13 @@ static PetscInt64 Genus(const EqmDiagnosis *diagnosis, const Counts *counts)
 
 static EqmTopology Classify(const EqmDiagnosis *diagnosis)
 {
-  if (diagnosis->genus != 0 || diagnosis->num_components != 1) return EQM_SHAPE_OTHER;
+  if (diagnosis->genus != 0 || diagnosis->num_components != 1) return EQM_TOPOLOGY_OTHER;
   if (diagnosis->cell_size == 4) {
-    return diagnosis->num_boundary_loops == 1 && diagnosis->euler_characteristic == 1 ? EQM_SHAPE_BALL
-                                                                                      : EQM_SHAPE_OTHER;
+    return diagnosis->num_boundary_loops == 1 && diagnosis->euler_characteristic == 1 ? EQM_TOPOLOGY_BALL
+                                                                                      : EQM_TOPOLOGY_OTHER;
   }
-  if (diagnosis->num_boundary_loops > 1) return EQM_SHAPE_OTHER;
-  return diagnosis->num_boundary_loops == 1 ? EQM_SHAPE_DISK : EQM_SHAPE_SPHERE;
+  if (diagnosis->num_boundary_loops > 1) return EQM_TOPOLOGY_OTHER;
+  return diagnosis->num_boundary_loops == 1 ? EQM_TOPOLOGY_DISK : EQM_TOPOLOGY_SPHERE;
 }
 
 /* From counts and merged findings to what the mesh is. */

@@ -263,7 +263,7 @@ PetscErrorCode EqmMeshDestroy(EqmMesh *mesh)
   PetscCall(PetscFree((*mesh)->cells));
   PetscCall(PetscFree((*mesh)->position));
   PetscCall(PetscFree((*mesh)->weight));
-  PetscCall(PetscFree((*mesh)->shape));
+  PetscCall(PetscFree((*mesh)->cell_measure));
   PetscCall(PetscFree((*mesh)->edge_length));
   PetscCall(PetscFree((*mesh)->on_boundary));
   PetscCall(PetscFree((*mesh)->boundary_facets));

@@ -34,10 +34,10 @@ static PetscErrorCode TakeTarget(EqmRegistration r, const EqmSide *side)
             "A is of the kind that maps to the %s, but %s maps to the %s: they do not correspond", r->target,
             side->soup->file, intake->target);
   PetscCall(PetscStrncpy(r->target, intake->target, sizeof(r->target)));
-  r->dim = intake->topology == EQM_SHAPE_DISK ? 2 : 3;
-  r->kind = intake->topology == EQM_SHAPE_DISK     ? EQM_IMAGE_PLANE
-            : intake->topology == EQM_SHAPE_SPHERE ? EQM_IMAGE_SPHERE
-                                                   : EQM_IMAGE_SPACE;
+  r->dim = intake->topology == EQM_TOPOLOGY_DISK ? 2 : 3;
+  r->kind = intake->topology == EQM_TOPOLOGY_DISK     ? EQM_IMAGE_PLANE
+            : intake->topology == EQM_TOPOLOGY_SPHERE ? EQM_IMAGE_SPHERE
+                                                      : EQM_IMAGE_SPACE;
   PetscFunctionReturn(0);
 }
 

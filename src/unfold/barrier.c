@@ -73,8 +73,8 @@ PetscErrorCode EqmBarrierCreate(EqmSolver solver, EqmBarrier *out)
   PetscCall(FindFacets(barrier, mesh));
   PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_COTANGENT, &solver->place, barrier->edge));
   for (PetscInt c = 0; c < n; c++) {
-    const PetscReal length = PetscPowReal(mesh->weight[c] * barrier->total / mesh->shape[c], 1. / 3.);
-    for (PetscInt e = 0; e < 6; e++) barrier->edge[6 * c + e] /= mesh->shape[c] * PetscSqr(length);
+    const PetscReal length = PetscPowReal(mesh->weight[c] * barrier->total / mesh->cell_measure[c], 1. / 3.);
+    for (PetscInt e = 0; e < 6; e++) barrier->edge[6 * c + e] /= mesh->cell_measure[c] * PetscSqr(length);
   }
   *out = barrier;
   PetscFunctionReturn(0);

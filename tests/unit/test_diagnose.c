@@ -160,7 +160,7 @@ static PetscErrorCode TestGoodGrid(void)
   PetscFunctionBegin;
   AddGrid(&draft, 4, 0.0);
   PetscCall(Diagnose(&draft, &d));
-  CHECK(d.topology == EQM_SHAPE_DISK && d.genus == 0 && d.num_components == 1 && d.num_boundary_loops == 1, "grid");
+  CHECK(d.topology == EQM_TOPOLOGY_DISK && d.genus == 0 && d.num_components == 1 && d.num_boundary_loops == 1, "grid");
   CHECK(d.num_edges == 56 && d.num_faces == 32 && d.num_boundary_edges == 16 && d.num_boundary_vertices == 16, "grid");
   CHECK(PetscAbsReal(d.measure - 16.0) < 1e-12 && PetscAbsReal(d.smallest_cell - 0.5) < 1e-14, "area %g", d.measure);
   CHECK(PetscAbsReal(d.worst_cell_quality - 0.5 * PetscSqrtReal(3.0)) < 1e-12, "quality %g", d.worst_cell_quality);
@@ -170,7 +170,7 @@ static PetscErrorCode TestGoodGrid(void)
   CHECK_FINDING(d, EQM_FINDING_CHORD, 2, 3, 9, -1);
   PetscCall(Mend(&draft, &repair, &d));
   CHECK(repair.cells_split == 4 && repair.vertices_added == 2 && d.num_cells == 36, "mended grid");
-  CHECK(PetscAbsReal(d.measure - 16.0) < 1e-12 && d.topology == EQM_SHAPE_DISK, "mended grid");
+  CHECK(PetscAbsReal(d.measure - 16.0) < 1e-12 && d.topology == EQM_TOPOLOGY_DISK, "mended grid");
   ONLY(d, EQM_FINDING_OPEN);
   PetscFunctionReturn(0);
 }
@@ -187,7 +187,7 @@ static PetscErrorCode TestVerticesAndCells(void)
   draft.vertices[3 * 7 + 2] = INFINITY;
   PetscCall(Diagnose(&draft, &d));
   CHECK_FINDING(d, EQM_FINDING_NOT_FINITE, 2, 7, -1, -1);
-  CHECK(d.topology == EQM_SHAPE_DISK && d.measure < 16.0 && d.measure > 0.0, "area %g", d.measure);
+  CHECK(d.topology == EQM_TOPOLOGY_DISK && d.measure < 16.0 && d.measure > 0.0, "area %g", d.measure);
 
   draft = (Draft){0};
   AddGrid(&draft, 4, 0.0);
@@ -200,7 +200,7 @@ static PetscErrorCode TestVerticesAndCells(void)
   CHECK_FINDING(d, EQM_FINDING_BAD_INDEX, 2, 32, -1, -1);
   CHECK_FINDING(d, EQM_FINDING_DEGENERATE_CELL, 1, 34, -1, -1);
   CHECK_FINDING(d, EQM_FINDING_DUPLICATE_CELL, 2, 35, 0, -1);
-  CHECK(d.topology == EQM_SHAPE_DISK && PetscAbsReal(d.measure - 16.0) < 1e-12, "area %g", d.measure);
+  CHECK(d.topology == EQM_TOPOLOGY_DISK && PetscAbsReal(d.measure - 16.0) < 1e-12, "area %g", d.measure);
   ONLY(d, EQM_FINDING_BAD_INDEX, EQM_FINDING_DEGENERATE_CELL, EQM_FINDING_DUPLICATE_CELL, EQM_FINDING_OPEN,
        EQM_FINDING_NO_INTERIOR_VERTEX, EQM_FINDING_CHORD);
   PetscCall(Mend(&draft, &repair, &d));
@@ -236,7 +236,7 @@ static PetscErrorCode TestManifold(void)
   PetscCall(Diagnose(&draft, &d));
   CHECK_FINDING(d, EQM_FINDING_NON_MANIFOLD_EDGE, 1, 6, 7, -1);
   CHECK_FINDING(d, EQM_FINDING_NON_MANIFOLD_VERTEX, 0, -1, -1, -1);
-  CHECK(d.genus == -1 && d.topology == EQM_SHAPE_OTHER, "fin");
+  CHECK(d.genus == -1 && d.topology == EQM_TOPOLOGY_OTHER, "fin");
 
   draft = (Draft){0};
   AddGrid(&draft, 4, 0.0);
@@ -246,7 +246,7 @@ static PetscErrorCode TestManifold(void)
   PetscCall(Diagnose(&draft, &d));
   CHECK_FINDING(d, EQM_FINDING_NON_MANIFOLD_VERTEX, 1, 24, -1, -1);
   CHECK_FINDING(d, EQM_FINDING_NON_MANIFOLD_EDGE, 0, -1, -1, -1);
-  CHECK(d.num_components == 1 && d.topology == EQM_SHAPE_OTHER, "bow tie");
+  CHECK(d.num_components == 1 && d.topology == EQM_TOPOLOGY_OTHER, "bow tie");
   PetscFunctionReturn(0);
 }
 
@@ -269,7 +269,7 @@ static PetscErrorCode TestOrientation(void)
   CHECK(d.finding[EQM_FINDING_INCONSISTENT_ORIENTATION].count == 7, "%d",
         (int)d.finding[EQM_FINDING_INCONSISTENT_ORIENTATION].count);
   CHECK_FINDING(d, EQM_FINDING_NOT_ORIENTABLE, 0, -1, -1, -1);
-  CHECK(d.topology == EQM_SHAPE_DISK, "still a disk");
+  CHECK(d.topology == EQM_TOPOLOGY_DISK, "still a disk");
   PetscCall(Mend(&draft, &repair, &d));
   CHECK(repair.cells_flipped == 3, "%d turned", (int)repair.cells_flipped);
   ONLY(d, EQM_FINDING_OPEN);
@@ -277,7 +277,7 @@ static PetscErrorCode TestOrientation(void)
   PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "moebius", 500, 3, &soup));
   PetscCall(EqmSoupDiagnose(soup, &d));
   CHECK_FINDING(d, EQM_FINDING_NOT_ORIENTABLE, 1, 0, -1, -1);
-  CHECK(d.topology == EQM_SHAPE_OTHER && d.genus == -1 && d.num_boundary_loops == 1, "band");
+  CHECK(d.topology == EQM_TOPOLOGY_OTHER && d.genus == -1 && d.num_boundary_loops == 1, "band");
   PetscCall(EqmSoupDestroy(&soup));
   PetscFunctionReturn(0);
 }
@@ -305,7 +305,7 @@ static PetscErrorCode TestShuffled(void)
     }
   }
   PetscCall(Diagnose(&draft, &d));
-  CHECK(d.topology == EQM_SHAPE_DISK && d.num_components == 1 && d.num_boundary_loops == 1, "shuffled");
+  CHECK(d.topology == EQM_TOPOLOGY_DISK && d.num_components == 1 && d.num_boundary_loops == 1, "shuffled");
   CHECK_FINDING(d, EQM_FINDING_NOT_ORIENTABLE, 0, -1, -1, -1);
   PetscCall(Mend(&draft, &repair, &d));
   CHECK(repair.cells_flipped == 96, "%d turned", (int)repair.cells_flipped);
@@ -327,7 +327,7 @@ static PetscErrorCode TestTopology(void)
   for (int k = 0; k < EQM_FINDING_SHOWN; k++) {
     CHECK(d.finding[EQM_FINDING_COMPONENTS].where[k][0] == 9 * k, "piece %d", k);
   }
-  CHECK(d.num_components == 6 && d.genus == 0 && d.topology == EQM_SHAPE_OTHER, "six pieces");
+  CHECK(d.num_components == 6 && d.genus == 0 && d.topology == EQM_TOPOLOGY_OTHER, "six pieces");
 
   draft = (Draft){0};
   AddGrid(&draft, 5, 0.0);
@@ -354,7 +354,7 @@ static PetscErrorCode TestTopology(void)
 
   draft = (Draft){.cell_size = 3};
   PetscCall(Diagnose(&draft, &d));
-  CHECK(d.topology == EQM_SHAPE_OTHER && d.num_cells == 0 && d.genus == -1, "nothing at all");
+  CHECK(d.topology == EQM_TOPOLOGY_OTHER && d.num_cells == 0 && d.genus == -1, "nothing at all");
   PetscFunctionReturn(0);
 }
 
@@ -371,14 +371,15 @@ static PetscErrorCode TestSolids(void)
   draft.cells[4 * 80] = draft.cells[4 * 80 + 1];
   draft.cells[4 * 80 + 1] = swap;
   PetscCall(Diagnose(&draft, &d));
-  CHECK(d.topology == EQM_SHAPE_BALL && d.euler_characteristic == 1 && d.num_boundary_loops == 1, "block");
+  CHECK(d.topology == EQM_TOPOLOGY_BALL && d.euler_characteristic == 1 && d.num_boundary_loops == 1, "block");
   CHECK(PetscAbsReal(d.measure - 27.0) < 1e-12 && d.num_boundary_vertices == 56, "volume %g", d.measure);
   CHECK_FINDING(d, EQM_FINDING_INCONSISTENT_ORIENTATION, 1, 80, -1, -1);
   ONLY(d, EQM_FINDING_INCONSISTENT_ORIENTATION, EQM_FINDING_NO_INTERIOR_VERTEX, EQM_FINDING_CHORD);
   CHECK(d.finding[EQM_FINDING_NO_INTERIOR_VERTEX].count > 0 && d.finding[EQM_FINDING_CHORD].count > 0, "block");
   PetscCall(Mend(&draft, &repair, &d));
   CHECK(repair.cells_flipped == 1 && repair.cells_split > 0, "block");
-  CHECK(d.topology == EQM_SHAPE_BALL && PetscAbsReal(d.measure - 27.0) < 1e-12, "mended block, volume %g", d.measure);
+  CHECK(d.topology == EQM_TOPOLOGY_BALL && PetscAbsReal(d.measure - 27.0) < 1e-12, "mended block, volume %g",
+        d.measure);
   CheckNothingElse(&d, 0, NULL, __LINE__);
 
   /* an inner vertex that went through a face: turning cells does not help */
@@ -399,7 +400,7 @@ static PetscErrorCode TestSolids(void)
   (void)AddCell(&draft, 1, 8, 5, 9); /* has the edge 1-5 alone in common with the cube */
   PetscCall(Diagnose(&draft, &d));
   CHECK_FINDING(d, EQM_FINDING_NON_MANIFOLD_VERTEX, 2, 1, -1, -1);
-  CHECK(d.topology == EQM_SHAPE_OTHER && d.num_components == 1, "hinge");
+  CHECK(d.topology == EQM_TOPOLOGY_OTHER && d.num_components == 1, "hinge");
 
   draft = (Draft){0};
   AddBlock(&draft, 1);
@@ -414,7 +415,7 @@ static PetscErrorCode TestSolids(void)
   for (PetscInt k = 13 * 6 * 4; k < 14 * 6 * 4; k++) draft.cells[k] = draft.cells[k + 13 * 6 * 4];
   PetscCall(Diagnose(&draft, &d));
   CHECK(d.num_boundary_loops == 2 && d.finding[EQM_FINDING_HOLES].count == 1, "cavity");
-  CHECK(d.topology == EQM_SHAPE_OTHER && d.euler_characteristic == 2, "cavity");
+  CHECK(d.topology == EQM_TOPOLOGY_OTHER && d.euler_characteristic == 2, "cavity");
   PetscFunctionReturn(0);
 }
 
@@ -438,7 +439,7 @@ static PetscErrorCode TestCenters(void)
   (void)AddVertex(&draft, 0.0, 0.0, 1.0);
   (void)AddCell(&draft, 0, 1, 2, 3);
   PetscCall(Mend(&draft, &repair, &d));
-  CHECK(d.num_cells == 4 && d.num_vertices == 5 && d.topology == EQM_SHAPE_BALL, "one tetrahedron");
+  CHECK(d.num_cells == 4 && d.num_vertices == 5 && d.topology == EQM_TOPOLOGY_BALL, "one tetrahedron");
   CheckNothingElse(&d, 0, NULL, __LINE__);
   PetscFunctionReturn(0);
 }

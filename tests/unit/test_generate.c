@@ -19,11 +19,13 @@ typedef struct {
 } Expected;
 
 static const Expected expected[] = {
-    {"cap", EQM_SHAPE_DISK, 0, 1},       {"patch", EQM_SHAPE_DISK, 0, 1},  {"hills", EQM_SHAPE_DISK, 0, 1},
-    {"sphere", EQM_SHAPE_SPHERE, 0, 0},  {"head", EQM_SHAPE_SPHERE, 0, 0}, {"starfish", EQM_SHAPE_SPHERE, 0, 0},
-    {"ball", EQM_SHAPE_BALL, 0, 1},      {"blob", EQM_SHAPE_BALL, 0, 1},   {"figure", EQM_SHAPE_BALL, 0, 1},
-    {"cube", EQM_SHAPE_BALL, 0, 1},      {"torus", EQM_SHAPE_OTHER, 1, 0}, {"annulus", EQM_SHAPE_OTHER, 0, 2},
-    {"moebius", EQM_SHAPE_OTHER, -1, 1},
+    {"cap", EQM_TOPOLOGY_DISK, 0, 1},       {"patch", EQM_TOPOLOGY_DISK, 0, 1},
+    {"hills", EQM_TOPOLOGY_DISK, 0, 1},     {"sphere", EQM_TOPOLOGY_SPHERE, 0, 0},
+    {"head", EQM_TOPOLOGY_SPHERE, 0, 0},    {"starfish", EQM_TOPOLOGY_SPHERE, 0, 0},
+    {"ball", EQM_TOPOLOGY_BALL, 0, 1},      {"blob", EQM_TOPOLOGY_BALL, 0, 1},
+    {"figure", EQM_TOPOLOGY_BALL, 0, 1},    {"cube", EQM_TOPOLOGY_BALL, 0, 1},
+    {"torus", EQM_TOPOLOGY_OTHER, 1, 0},    {"annulus", EQM_TOPOLOGY_OTHER, 0, 2},
+    {"moebius", EQM_TOPOLOGY_OTHER, -1, 1},
 };
 
 /* The shape is what it promises, without a finding that stands in a map's way, and refining keeps that. */

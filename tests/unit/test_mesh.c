@@ -100,7 +100,7 @@ static PetscErrorCode CheckMeasures(EqmMesh mesh, EqmSoup serial, const PetscInt
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
     const PetscInt *const v = mesh->cells + 3 * c;
     const PetscReal area = TriangleArea(p + 3 * input[v[0]], p + 3 * input[v[1]], p + 3 * input[v[2]]);
-    CHECK_CLOSE(mesh->shape[c], area, 1e-9, area);
+    CHECK_CLOSE(mesh->cell_measure[c], area, 1e-9, area);
     for (PetscInt k = 0; k < 3; k++) by_vertex[input[v[k]]] -= mesh->weight[c] * total;
     if (c >= mesh->num_owned_cells) continue;
     CHECK_CLOSE(mesh->weight[c], area * density(mesh->cell_input[c]) / total, 1e-9, mesh->weight[c]);

@@ -59,9 +59,9 @@ static PetscErrorCode CheckCells(EqmMesh mesh, EqmSoup serial)
     const PetscReal volume = Volume(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2], p + 3 * v[3]);
 
     CHECK(volume > 0., "cell %d has volume %g", (int)mesh->cell_input[c], (double)volume);
-    CHECK_CLOSE(mesh->shape[c], volume, 1e-9, volume);
+    CHECK_CLOSE(mesh->cell_measure[c], volume, 1e-9, volume);
     for (int a = 0; a < 4; a++) got[v[a]]++;
-    if (c < mesh->num_owned_cells) sum += mesh->shape[c];
+    if (c < mesh->num_owned_cells) sum += mesh->cell_measure[c];
   }
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
     CHECK(got[v] == wanted[mesh->vertex_input[v]], "vertex %d has %d cells", (int)mesh->vertex_input[v], (int)got[v]);
@@ -105,7 +105,7 @@ static PetscErrorCode CheckSurface(EqmMesh mesh, EqmSurface surface)
 
   PetscFunctionBegin;
   PetscCall(EqmSoupDiagnose(surface->soup, &diagnosis));
-  CHECK(diagnosis.topology == EQM_SHAPE_SPHERE, "topology %d", (int)diagnosis.topology);
+  CHECK(diagnosis.topology == EQM_TOPOLOGY_SPHERE, "topology %d", (int)diagnosis.topology);
   CHECK(surface->soup->num_vertices == mesh->num_boundary_vertices, "%d vertices", (int)surface->soup->num_vertices);
   CHECK(!diagnosis.finding[EQM_FINDING_INCONSISTENT_ORIENTATION].count, "turned");
   CHECK(surface->soup->num_cells == 2 * (surface->soup->num_vertices - 2), "%d cells", (int)surface->soup->num_cells);
@@ -248,7 +248,7 @@ static PetscErrorCode TestMendedSolid(void)
   CHECK(repair.cells_flipped == 1 && repair.duplicate_cells_removed == 1, "%d turned, %d removed",
         (int)repair.cells_flipped, (int)repair.duplicate_cells_removed);
   PetscCall(EqmSoupDiagnose(mended, &diagnosis));
-  CHECK(diagnosis.topology == EQM_SHAPE_BALL && diagnosis.num_cells == 8, "%d cells", (int)diagnosis.num_cells);
+  CHECK(diagnosis.topology == EQM_TOPOLOGY_BALL && diagnosis.num_cells == 8, "%d cells", (int)diagnosis.num_cells);
   for (int k = 0; k < EQM_NUM_FINDINGS; k++) CHECK(!diagnosis.finding[k].count, "finding %d is left", k);
   CHECK_CLOSE(diagnosis.measure, 4. / 3., 1e-14, 1.);
   PetscCall(CheckMappedBack(given, mended, parent));
