@@ -1,13 +1,20 @@
-/* The answer: where every input vertex goes, how good that is, how it was found. In input numbering, in the slabs of
-   the soup it belongs to. */
+/* The result of a run: the image of every input vertex, how good the map is, and how it was found. Everything per
+   vertex and per cell is in the numbering of the input, in the slabs of the soup that the map belongs to: this rank
+   holds the vertices soup->vertex_start ... soup->vertex_end - 1 and the cells soup->cell_start ... soup->cell_end - 1.
+
+   A map is opaque. Arrays that an EqmMapGet function returns belong to the map and live as long as it does. Get and Set
+   functions are not collective and raise no errors of their own unless it is said otherwise. */
 #ifndef EQUIMAP_MAP_H
 #define EQUIMAP_MAP_H
 
-#include <equimap/soup.h>
+#include <equimap/mesh.h>
+
+typedef struct _p_EqmMap *EqmMap;
 
 /* Longest description of a linear solver, terminating zero included. */
 #define EQM_LINEAR_TEXT 192
 
+/* Of a sample: mean, standard deviation (divided by the number of entries), extremes, quantiles. */
 typedef struct {
   PetscReal mean, sd, min, max, p25, p50, p75, p95;
 } EqmStatistics;
@@ -25,7 +32,7 @@ typedef struct {
   EqmStatistics angle_error;                      /* degrees per corner; p50 is the median; triangles only */
   PetscInt64 angle_histogram[EQM_NUM_ANGLE_BINS]; /* corners whose angle error lies in the bin; triangles only */
   EqmStatistics quasiconformal;                   /* ratio of singular values, >= 1; triangles only */
-  PetscInt64 folds;
+  PetscInt64 folds;                               /* cells of negative image measure */
 } EqmDistortion;
 
 /* One row per iteration. Row 0 is the start. */
@@ -40,89 +47,115 @@ typedef struct {
   PetscReal seconds;       /* since the program's start */
 } EqmHistoryRow;
 
-/* An array that belongs to a result: rows dealt to the ranks in contiguous slabs. */
+/* What a run took. */
 typedef struct {
-  char path[128];               /* in the result file */
-  PetscInt total, start, count; /* rows of all ranks, this rank's first, this rank's */
-  PetscInt width;               /* entries per row; 0 makes the array one-dimensional */
-  PetscBool is_real;
-  PetscReal *reals;
-  PetscInt64 *integers;
-} EqmMapArray;
-
-/* A number or a text that belongs to a result. */
-typedef struct {
-  char key[96]; /* dots make groups in the summary: "landmarks.error.max" */
-  PetscBool is_text;
-  PetscReal value;
-  char text[PETSC_MAX_PATH_LEN];
-} EqmMapFigure;
-
-typedef struct _p_EqmMap *EqmMap;
-struct _p_EqmMap {
-  EqmSoup soup;                /* the input mesh; referenced, not owned */
-  PetscInt dim;                /* coordinates per vertex: 2 or 3 */
-  PetscBool in_space;          /* triangles lie on a surface in space, not on the sphere: areas have no sign */
-  PetscReal *coordinates;      /* dim * slab of vertices */
-  PetscReal *cell_ratio;       /* r per cell of the slab */
-  PetscReal *vertex_ratio;     /* mean of r over the cells around a vertex, weighted by w; per vertex of the slab */
-  PetscReal *quasi_conformal;  /* ratio of singular values per cell of the slab; triangles only */
-  PetscReal *conformal_factor; /* log (share of the image's area / share of the surface's) of the cells around a vertex,
-                                  per vertex of the slab; triangles only */
-  EqmDistortion distortion;
-  PetscReal energy_initial, energy_final;
-  PetscInt iterations, num_history;
-  EqmHistoryRow *history; /* num_history rows, the same on every rank */
-  EqmWork work;
-  EqmStatus status;
-  char message[EQM_MESSAGE_MAX]; /* how the run ended, in plain words */
-  char command[64], method[64];
-  char linear_solver[EQM_LINEAR_TEXT]; /* what solved with matrices, and what it took */
   PetscInt ranks, threads;
-  PetscReal phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS], total_seconds;
-  PetscInt64 memory_max_per_rank, memory_total, num_boundary_vertices;
-  PetscInt64 boundary_folds;        /* maps to the ball: triangles of the boundary that do not look outward */
-  PetscInt num_hessian_eigenvalues; /* where they were asked for: the smallest of the Hessian at the result */
-  PetscReal *hessian_eigenvalues;
-  EqmMap mended;          /* where the input was mended first: the map of the mended mesh; referenced, not owned */
-  const PetscInt *parent; /* with `mended`: per cell of its soup's slab the input cell it comes from; referenced */
-  EqmRepair repair;       /* with `mended`: what was mended */
-  PetscInt num_arrays, num_figures; /* what a command adds to the result */
-  EqmMapArray *arrays;
-  EqmMapFigure *figures;
-};
+  EqmWork work;
+  PetscReal total_seconds, phase_seconds[EQM_NUM_PHASES], event_seconds[EQM_NUM_EVENTS];
+  PetscInt64 memory_max_per_rank, memory_total; /* peak, in bytes */
+} EqmMapCost;
 
+/* ---- life */
+
+/* EqmMapCreate - a map of the mesh `soup`, which must outlive it, with `dim` (2 or 3) coordinates per vertex;
+   coordinates and ratios are zero. Collective. Errors: PETSC_ERR_ARG_OUTOFRANGE. */
 PETSC_EXTERN PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map);
+/* EqmMapDestroy - free a map and set it to NULL; nothing happens if it is NULL. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMapDestroy(EqmMap *map);
-/* Bring the map of a mended mesh back onto the input that EqmSoupRepair mended: places and vertex ratios of the input's
-   vertices, per input cell the mean ratio of what became of it, weighted by `cell_weight` (per cell of the mended
-   slab), 1 where it was removed. Distortion, history and work are those of the mended map. `mended` and `parent` must
-   outlive the map, which writes them into a result file. Vertices that no cell uses stay at zero. Collective. */
-PETSC_EXTERN PetscErrorCode EqmMapOntoInput(EqmMap mended, EqmSoup input, const PetscInt *parent,
-                                            const PetscReal *cell_weight, EqmMap *map);
+/* EqmMapOntoInput - bring the map of a repaired mesh back onto the input that EqmSoupRepair made it of.
 
-/* Add an array to the result file (the map takes `values` over; PetscMalloc'ed, count * max(1, width)), or a figure to
-   the result file's attributes and the summary. Figures are the same on every rank. Not collective. */
+   Collective. parent - per cell of the repaired soup's slab, the input cell it comes from; cell_weight - per cell of
+   that slab, its weight w, in any unit; map - the new map, of `input`. The input's vertices kept their numbers: their
+   images and vertex ratios are copied. An input cell gets the weighted mean of the ratios of its children, 1 if it was
+   removed. Vertices that no cell uses stay at zero. Distortion, history and cost are those of the repaired map.
+   `repaired` and `parent` are referenced, are written into a result file, and must outlive `map`. */
+PETSC_EXTERN PetscErrorCode EqmMapOntoInput(EqmMap repaired, EqmSoup input, const PetscInt *parent,
+                                            const PetscReal *cell_weight, EqmMap *map);
+/* EqmMapRead - read the map of the mesh `soup` from a file: a result (.h5, /map/coordinates), or a mesh of any format
+   whose vertices are the images; with z = 0 everywhere it is a planar map. Ratios and distortion stay zero until
+   EqmMapMeasure. Collective. Errors: EQM_ERR_IO, EQM_ERR_MESH (the vertex counts differ). */
+PETSC_EXTERN PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *map);
+/* EqmMapMeasure - compute distortion, ratios and folds of `map` from coordinates alone.
+
+   Collective. mesh - the distributed mesh made of the map's soup; x - the images of its local vertices, ghosts
+   included, dim reals each. Fills everything that EqmMapGetDistortion, EqmMapGetRatios, EqmMapGetQuasiConformal and
+   EqmMapGetConformalFactor return. Images of cells are flat triangles and tetrahedra; of a mirrored map the signs are
+   turned first. With r = (a/w)(W/A) the energy is A sum (w/W)(r - 1)^2, which is the normalised authalic energy of
+   [000] and [001] and the isovolumetric energy of [003 (2)]; angle errors and quasi-conformal distortion are those of
+   the affine map of each triangle. */
+PETSC_EXTERN PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x);
+
+/* ---- what a map holds */
+
+/* The mesh that the map belongs to, and its coordinates per vertex. */
+PETSC_EXTERN PetscErrorCode EqmMapGetSoup(EqmMap map, EqmSoup *soup);
+PETSC_EXTERN PetscErrorCode EqmMapGetDimension(EqmMap map, PetscInt *dim);
+/* The images: dim reals per vertex of the slab; may be written to. */
+PETSC_EXTERN PetscErrorCode EqmMapGetCoordinates(EqmMap map, PetscReal **coordinates);
+/* Ratios r = (share of the image's measure) / (share of the mesh's measure): one per cell of the slab, and one per
+   vertex of the slab, the mean over the cells around it weighted by their measure. Either pointer may be NULL. */
+PETSC_EXTERN PetscErrorCode EqmMapGetRatios(EqmMap map, const PetscReal **per_cell, const PetscReal **per_vertex);
+/* Surfaces only, NULL for solids: per cell of the slab the ratio of the two singular values of the triangle's affine
+   map, at least 1; per vertex of the slab log(share of the image's area / share of the surface's area) of the cells
+   around. */
+PETSC_EXTERN PetscErrorCode EqmMapGetQuasiConformal(EqmMap map, const PetscReal **per_cell);
+PETSC_EXTERN PetscErrorCode EqmMapGetConformalFactor(EqmMap map, const PetscReal **per_vertex);
+/* Figures of the whole map, the same on every rank. */
+PETSC_EXTERN PetscErrorCode EqmMapGetDistortion(EqmMap map, const EqmDistortion **distortion);
+/* Maps to the ball: triangles of the boundary that do not look outward. */
+PETSC_EXTERN PetscErrorCode EqmMapGetBoundaryFolds(EqmMap map, PetscInt64 *folds);
+/* The energy of the first map and of the last; of `conformal` the Dirichlet energy. Either pointer may be NULL. */
+PETSC_EXTERN PetscErrorCode EqmMapGetEnergies(EqmMap map, PetscReal *initial, PetscReal *final);
+PETSC_EXTERN PetscErrorCode EqmMapSetEnergies(EqmMap map, PetscReal initial, PetscReal final);
+/* One row per iteration, the same on every rank; `num_rows` is 0 for a map that was read. */
+PETSC_EXTERN PetscErrorCode EqmMapGetHistory(EqmMap map, PetscInt *num_rows, const EqmHistoryRow **rows);
+/* How the run ended, as a status and in words; `message` may be NULL. */
+PETSC_EXTERN PetscErrorCode EqmMapGetStatus(EqmMap map, EqmStatus *status, const char **message);
+PETSC_EXTERN PetscErrorCode EqmMapSetStatus(EqmMap map, EqmStatus status, const char *message);
+/* The target or command, the method, and what solved with matrices. Each pointer may be NULL. */
+PETSC_EXTERN PetscErrorCode EqmMapGetProvenance(EqmMap map, const char **command, const char **method,
+                                                const char **linear_solver);
+PETSC_EXTERN PetscErrorCode EqmMapSetCommand(EqmMap map, const char *command);
+/* What the run took so far; EqmMapSetCost takes threads, seconds and memory from the ledger and the system
+   (collective). The work is that of the map's history. */
+PETSC_EXTERN PetscErrorCode EqmMapGetCost(EqmMap map, const EqmMapCost **cost);
+PETSC_EXTERN PetscErrorCode EqmMapSetCost(EqmMap map, EqmLedger ledger);
+/* The smallest eigenvalues of the Hessian at the result, ascending; `num` is 0 where they were not computed. */
+PETSC_EXTERN PetscErrorCode EqmMapGetHessianEigenvalues(EqmMap map, PetscInt *num, const PetscReal **values);
+PETSC_EXTERN PetscErrorCode EqmMapSetHessianEigenvalues(EqmMap map, PetscInt num, const PetscReal *values);
+
+/* ---- what a program adds to a result file and to the summary */
+
+/* Add an array to the result file. The map takes `values` over, which must be PetscMalloc'ed and holds
+   count * max(1, width) entries. path - in the result file; total - rows of all ranks; start, count - this rank's rows;
+   width - entries per row, 0 makes the array one-dimensional. */
 PETSC_EXTERN PetscErrorCode EqmMapAddReals(EqmMap map, const char *path, PetscInt total, PetscInt start, PetscInt count,
                                            PetscInt width, PetscReal *values);
 PETSC_EXTERN PetscErrorCode EqmMapAddIntegers(EqmMap map, const char *path, PetscInt total, PetscInt start,
                                               PetscInt count, PetscInt width, PetscInt64 *values);
+/* Add a real number, a count or a text to the result file's attributes and to the summary, the same on every rank. Dots
+   in a key make groups in the summary: "landmarks.error.max". */
 PETSC_EXTERN PetscErrorCode EqmMapAddFigure(EqmMap map, const char *key, PetscReal value);
+PETSC_EXTERN PetscErrorCode EqmMapAddCount(EqmMap map, const char *key, PetscInt64 value);
 PETSC_EXTERN PetscErrorCode EqmMapAddText(EqmMap map, const char *key, const char *text);
 
-/* Write a result: every name in the comma-separated `files`, format by suffix; .h5 holds everything and gets an .xmf
-   beside it. tmp -> fsync -> rename; a file that was there survives a failure. Errors: EQM_ERR_USAGE (suffix),
-   EQM_ERR_IO. Collective. */
+/* ---- files */
+
+/* EqmMapWrite - write a result to every name in the comma-separated `files`, the format by suffix. .h5 holds everything
+   and gets an .xmf for ParaView beside it; the mesh formats hold the mesh with its vertices at their images (z = 0 for
+   planar maps) and, where the format can, the fields. Each file appears whole or not at all, and one that was there
+   survives a failure. Collective. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWrite(EqmMap map, const char *files);
-/* Look before a long run whether `files` can be written: suffixes known, directories there and writable. Collective. */
+/* EqmMapCheckWritable - can `files` be written? For before a long run. Suffixes must be known, directories there and
+   writable. Collective. Errors: EQM_ERR_USAGE, EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapCheckWritable(MPI_Comm comm, const char *files);
-/* Read the coordinates of a map of the mesh `soup`: .h5 (/map/coordinates), or any mesh format whose vertices are the
-   images (with z = 0 everywhere: a planar map). Errors: EQM_ERR_IO, EQM_ERR_MESH (vertex count differs). Collective. */
-PETSC_EXTERN PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *map);
-/* The summary as JSON (INTERFACE.md's keys) and the history as CSV. Collective; rank 0 writes. */
+/* EqmMapWriteSummary - the figures of a run as JSON. Collective; rank 0 writes. Errors: EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteSummary(EqmMap map, const char *file);
+/* EqmMapWriteHistory - a row per iteration as CSV with a header, all digits. Collective; rank 0 writes. Errors:
+   EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteHistory(EqmMap map, const char *file);
-/* The histogram of angle errors as CSV: from, to (degrees), corners. Collective; rank 0 writes. */
+/* EqmMapWriteHistogram - the histogram of angle errors as CSV: from, to (degrees), corners. Collective; rank 0 writes.
+   Errors: EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteHistogram(EqmMap map, const char *file);
 
 #endif

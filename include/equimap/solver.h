@@ -42,7 +42,4 @@ PETSC_EXTERN PetscBool EqmHessianAvailable(void);
 PETSC_EXTERN PetscErrorCode EqmSolverHessianEigenvalues(EqmSolver solver, PetscInt wanted, PetscReal *values,
                                                         PetscInt *found);
 
-/* Fill distortion, ratios and folds of `map` from the places of local vertices, dim each. Collective. */
-PETSC_EXTERN PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x);
-
 #endif

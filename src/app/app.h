@@ -26,9 +26,6 @@ PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmSta
 PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
 
-PETSC_INTERN PetscErrorCode EqmCheckOutput(const char *mesh, const char *files);
-PETSC_INTERN PetscErrorCode EqmSweepOutput(const char *files);
-PETSC_INTERN PetscErrorCode EqmCloseBooks(EqmLedger ledger, EqmMap map);
 PETSC_INTERN PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ...);
 
 /* How the work is laid out: -threads, which main takes before any command (asked again to be listed by --help), and

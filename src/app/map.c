@@ -3,6 +3,7 @@
 #include "base/stop.h"
 #include "intake/intake.h"
 #include "method/checkpoint.h"
+#include "store/output.h"
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
@@ -83,29 +84,32 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   PetscCall(PetscSNPrintf(options->usage, sizeof(options->usage), "equimap %s %s", line->command, mesh));
   options->input.usage = options->usage;
   options->input.target = line->command;
-  PetscCall(EqmCheckOutput(mesh, options->output));
-  if (options->has_summary) PetscCall(EqmCheckOutput(mesh, options->summary));
-  if (options->has_history) PetscCall(EqmCheckOutput(mesh, options->history));
-  if (options->has_histogram) PetscCall(EqmCheckOutput(mesh, options->histogram));
+  PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->output));
+  if (options->has_summary) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->summary));
+  if (options->has_history) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->history));
+  if (options->has_histogram) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->histogram));
   if (!options->has_checkpoint) PetscFunctionReturn(0);
-  PetscCall(EqmCheckOutput(mesh, options->checkpoint));
-  PetscCall(EqmSweepOutput(options->output));
-  if (options->has_summary) PetscCall(EqmSweepOutput(options->summary));
-  if (options->has_history) PetscCall(EqmSweepOutput(options->history));
-  if (options->has_histogram) PetscCall(EqmSweepOutput(options->histogram));
+  PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->checkpoint));
+  PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->output));
+  if (options->has_summary) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->summary));
+  if (options->has_history) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->history));
+  if (options->has_histogram) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->histogram));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap map)
 {
+  EqmStatus status;
+
   PetscFunctionBegin;
-  PetscCall(EqmCloseBooks(ledger, map));
+  PetscCall(EqmMapGetStatus(map, &status, NULL));
+  PetscCall(EqmMapSetCost(map, ledger));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
-  if (map->status != EQM_STATUS_STOPPED) PetscCall(EqmMapWrite(map, options->output)); /* there is the checkpoint */
+  if (status != EQM_STATUS_STOPPED) PetscCall(EqmMapWrite(map, options->output)); /* there is the checkpoint */
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   if (options->has_histogram) PetscCall(EqmMapWriteHistogram(map, options->histogram));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
-  PetscCall(EqmCloseBooks(ledger, map));
+  PetscCall(EqmMapSetCost(map, ledger));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));
   PetscFunctionReturn(0);
 }
@@ -114,61 +118,75 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
 static PetscErrorCode TakeEigenvalues(const MapOptions *options, EqmLedger ledger, EqmSolver solver, EqmMap map)
 {
   const PetscInt wanted = options->hessian_eigenvalues;
+  PetscReal *values;
+  PetscInt found;
 
   PetscFunctionBegin;
   if (wanted == 0) PetscFunctionReturn(0);
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_MEASURE));
-  PetscCall(PetscMalloc1(wanted, &map->hessian_eigenvalues));
-  PetscCall(EqmSolverHessianEigenvalues(solver, wanted, map->hessian_eigenvalues, &map->num_hessian_eigenvalues));
+  PetscCall(PetscMalloc1(wanted, &values));
+  PetscCall(EqmSolverHessianEigenvalues(solver, wanted, values, &found));
+  PetscCall(EqmMapSetHessianEigenvalues(map, found, values));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_MEASURE));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\nsmallest eigenvalues of the Hessian:"));
-  for (PetscInt k = 0; k < map->num_hessian_eigenvalues; k++)
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, " %.4e", (double)map->hessian_eigenvalues[k]));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, map->num_hessian_eigenvalues < wanted ? " (the others not found)\n" : "\n"));
+  for (PetscInt k = 0; k < found; k++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, " %.4e", (double)values[k]));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, found < wanted ? " (the others not found)\n" : "\n"));
+  PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }
 
 /* What it took. */
-static PetscErrorCode PrintWork(MPI_Comm comm, EqmMap map)
+static PetscErrorCode PrintWork(MPI_Comm comm, const EqmMapCost *cost)
 {
   PetscFunctionBegin;
   PetscCall(PetscPrintf(comm,
                         "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT
                         " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves\n",
-                        map->work.evaluations, map->work.factorizations, map->work.coupled_factorizations,
-                        map->work.solves));
+                        cost->work.evaluations, cost->work.factorizations, cost->work.coupled_factorizations,
+                        cost->work.solves));
   PetscCall(PetscPrintf(comm,
                         "  seconds       %.2f: read %.2f, diagnose %.2f, distribute %.2f, start %.2f, minimise %.2f, "
                         "measure %.2f, write %.2f\n",
-                        (double)map->total_seconds, (double)map->phase_seconds[EQM_PHASE_READ],
-                        (double)map->phase_seconds[EQM_PHASE_DIAGNOSE],
-                        (double)map->phase_seconds[EQM_PHASE_DISTRIBUTE], (double)map->phase_seconds[EQM_PHASE_START],
-                        (double)map->phase_seconds[EQM_PHASE_MINIMISE], (double)map->phase_seconds[EQM_PHASE_MEASURE],
-                        (double)map->phase_seconds[EQM_PHASE_WRITE]));
+                        (double)cost->total_seconds, (double)cost->phase_seconds[EQM_PHASE_READ],
+                        (double)cost->phase_seconds[EQM_PHASE_DIAGNOSE],
+                        (double)cost->phase_seconds[EQM_PHASE_DISTRIBUTE], (double)cost->phase_seconds[EQM_PHASE_START],
+                        (double)cost->phase_seconds[EQM_PHASE_MINIMISE], (double)cost->phase_seconds[EQM_PHASE_MEASURE],
+                        (double)cost->phase_seconds[EQM_PHASE_WRITE]));
   PetscCall(PetscPrintf(comm,
                         "  of these      METIS %.2f, assembly %.2f, factorisation %.2f, solves %.2f, kernels %.2f\n",
-                        (double)map->event_seconds[EQM_EVENT_PARTITION], (double)map->event_seconds[EQM_EVENT_ASSEMBLE],
-                        (double)map->event_seconds[EQM_EVENT_FACTOR], (double)map->event_seconds[EQM_EVENT_SOLVE],
-                        (double)map->event_seconds[EQM_EVENT_KERNEL]));
+                        (double)cost->event_seconds[EQM_EVENT_PARTITION],
+                        (double)cost->event_seconds[EQM_EVENT_ASSEMBLE], (double)cost->event_seconds[EQM_EVENT_FACTOR],
+                        (double)cost->event_seconds[EQM_EVENT_SOLVE], (double)cost->event_seconds[EQM_EVENT_KERNEL]));
   PetscFunctionReturn(0);
 }
 
 /* A closing table for people. */
 static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
 {
-  const EqmDistortion *const d = &map->distortion;
-  const PetscBool is_solid = (PetscBool)(map->soup->cell_size == 4);
+  const EqmDistortion *d;
+  const EqmMapCost *cost;
+  const char *message;
+  PetscReal initial, final;
+  PetscInt64 boundary_folds;
+  EqmSoup soup;
+  EqmStatus status;
   MPI_Comm comm = PETSC_COMM_WORLD;
 
   PetscFunctionBegin;
+  PetscCall(EqmMapGetDistortion(map, &d));
+  PetscCall(EqmMapGetCost(map, &cost));
+  PetscCall(EqmMapGetStatus(map, &status, &message));
+  PetscCall(EqmMapGetEnergies(map, &initial, &final));
+  PetscCall(EqmMapGetBoundaryFolds(map, &boundary_folds));
+  PetscCall(EqmMapGetSoup(map, &soup));
+  const PetscBool is_solid = (PetscBool)(soup->cell_size == 4);
   PetscCall(PetscPrintf(comm,
                         "\n%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells, %" PetscInt_FMT
                         " rank%s x %" PetscInt_FMT " thread%s\n",
-                        map->soup->file, map->soup->num_vertices, map->soup->num_cells, map->ranks,
-                        map->ranks == 1 ? "" : "s", map->threads, map->threads == 1 ? "" : "s"));
-  if (options->input.quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(map->status), map->message));
-  PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double)map->energy_final,
-                        (double)map->energy_initial));
+                        soup->file, soup->num_vertices, soup->num_cells, cost->ranks, cost->ranks == 1 ? "" : "s",
+                        cost->threads, cost->threads == 1 ? "" : "s"));
+  if (options->input.quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(status), message));
+  PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double) final, (double)initial));
   PetscCall(PetscPrintf(comm, "  %-12s  sd %.3e   min %.4f   median %.6f   max %.4f\n",
                         is_solid ? "volume ratio" : "area ratio", (double)d->ratio.sd, (double)d->ratio.min,
                         (double)d->ratio.p50, (double)d->ratio.max));
@@ -176,11 +194,11 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
     PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean,
                           (double)d->angle_error.p50));
   PetscCall(PetscPrintf(comm, "  folds         %" PetscInt64_FMT, d->folds));
-  if (is_solid) PetscCall(PetscPrintf(comm, "   on the boundary %" PetscInt64_FMT, map->boundary_folds));
+  if (is_solid) PetscCall(PetscPrintf(comm, "   on the boundary %" PetscInt64_FMT, boundary_folds));
   PetscCall(PetscPrintf(comm, "\n"));
-  PetscCall(PrintWork(comm, map));
-  PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)map->memory_total,
-                        map->status == EQM_STATUS_STOPPED ? options->checkpoint : options->output));
+  PetscCall(PrintWork(comm, cost));
+  PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)cost->memory_total,
+                        status == EQM_STATUS_STOPPED ? options->checkpoint : options->output));
   PetscFunctionReturn(0);
 }
 
@@ -206,7 +224,7 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(TakeEigenvalues(options, ledger, solver, map));
   PetscCall(Write(options, ledger, map));
   PetscCall(PrintResult(options, map));
-  *status = map->status;
+  PetscCall(EqmMapGetStatus(map, status, NULL));
   if (map != found) PetscCall(EqmMapDestroy(&map));
   PetscCall(EqmMapDestroy(&found));
   PetscCall(EqmSolverDestroy(&solver));

@@ -56,7 +56,9 @@ static PetscErrorCode Measure(const EqmCommandLine *line, const MeasureOptions *
   EqmSoup soup;
   EqmMesh mesh;
   EqmMap map;
-  PetscReal *x;
+  const EqmDistortion *distortion;
+  PetscReal *coordinates, *x;
+  PetscInt dim;
 
   PetscFunctionBegin;
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
@@ -65,16 +67,19 @@ static PetscErrorCode Measure(const EqmCommandLine *line, const MeasureOptions *
   PetscCall(CheckMeasurable(soup));
   PetscCall(EqmMapRead(soup, line->argument[1], &map));
   PetscCall(EqmMeshCreate(soup, ledger, &mesh));
-  PetscCall(PetscMalloc1(map->dim * mesh->num_local, &x));
-  PetscCall(EqmMeshVerticesFromInput(mesh, soup, map->dim, map->coordinates, x));
+  PetscCall(EqmMapGetDimension(map, &dim));
+  PetscCall(EqmMapGetCoordinates(map, &coordinates));
+  PetscCall(PetscMalloc1(dim * mesh->num_local, &x));
+  PetscCall(EqmMeshVerticesFromInput(mesh, soup, dim, coordinates, x));
   PetscCall(EqmMapMeasure(map, mesh, x));
   PetscCall(PetscFree(x));
-  map->status = *status = map->distortion.folds ? EQM_STATUS_FOLDS : EQM_STATUS_CONVERGED;
-  map->energy_initial = map->energy_final = map->distortion.energy;
-  map->num_boundary_vertices = mesh->num_boundary_vertices;
-  PetscCall(PetscStrncpy(map->command, "measure", sizeof(map->command)));
+  PetscCall(EqmMapGetDistortion(map, &distortion));
+  *status = distortion->folds ? EQM_STATUS_FOLDS : EQM_STATUS_CONVERGED;
+  PetscCall(EqmMapSetStatus(map, *status, ""));
+  PetscCall(EqmMapSetEnergies(map, distortion->energy, distortion->energy));
+  PetscCall(EqmMapSetCommand(map, "measure"));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s as a map of %s\n", line->argument[1], line->argument[0]));
-  PetscCall(Print(&map->distortion, (PetscBool)(soup->cell_size == 3)));
+  PetscCall(Print(distortion, (PetscBool)(soup->cell_size == 3)));
   if (options->summary[0]) PetscCall(EqmMapWriteSummary(map, options->summary));
   if (options->histogram[0]) PetscCall(EqmMapWriteHistogram(map, options->histogram));
   PetscCall(EqmMapDestroy(&map));

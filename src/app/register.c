@@ -1,6 +1,7 @@
 /* equimap register A B -o OUT: a measure-preserving correspondence between two surfaces or two solids. */
 #include "app.h"
 #include "base/stop.h"
+#include "store/output.h"
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
@@ -49,34 +50,36 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const RegisterO
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
   for (int k = 0; k < 2; k++) {
     const char *const mesh = line->num_arguments ? line->argument[k] : "";
-    PetscCall(EqmCheckOutput(mesh, options->output));
-    if (options->has_summary) PetscCall(EqmCheckOutput(mesh, options->summary));
-    if (options->has_history) PetscCall(EqmCheckOutput(mesh, options->history));
-    if (options->has_checkpoint) PetscCall(EqmCheckOutput(mesh, options->checkpoint));
+    PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->output));
+    if (options->has_summary) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->summary));
+    if (options->has_history) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->history));
+    if (options->has_checkpoint) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->checkpoint));
   }
   if (!options->has_checkpoint) PetscFunctionReturn(0);
-  PetscCall(EqmSweepOutput(options->output));
-  if (options->has_summary) PetscCall(EqmSweepOutput(options->summary));
-  if (options->has_history) PetscCall(EqmSweepOutput(options->history));
+  PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->output));
+  if (options->has_summary) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->summary));
+  if (options->has_history) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->history));
   PetscFunctionReturn(0);
 }
 
 /* Of a run that was stopped there is the checkpoint, and no result. */
 static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration)
 {
+  EqmStatus status;
   EqmMap map;
 
   PetscFunctionBegin;
   PetscCall(EqmRegistrationGetMap(registration, &map));
-  PetscCall(EqmCloseBooks(ledger, map));
+  PetscCall(EqmMapGetStatus(map, &status, NULL));
+  PetscCall(EqmMapSetCost(map, ledger));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
-  if (map->status != EQM_STATUS_STOPPED) {
+  if (status != EQM_STATUS_STOPPED) {
     PetscCall(EqmMapWrite(map, options->output));
     PetscCall(EqmRegistrationWriteFrames(registration, options->output));
   }
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
-  PetscCall(EqmCloseBooks(ledger, map));
+  PetscCall(EqmMapSetCost(map, ledger));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));
   PetscFunctionReturn(0);
 }
@@ -84,14 +87,18 @@ static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, Eq
 /* A closing table for people. */
 static PetscErrorCode View(const RegisterOptions *options, EqmRegistration registration)
 {
+  const EqmMapCost *cost;
+  EqmStatus status;
   EqmMap map;
 
   PetscFunctionBegin;
   PetscCall(EqmRegistrationView(registration));
   PetscCall(EqmRegistrationGetMap(registration, &map));
-  if (map->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
+  PetscCall(EqmMapGetStatus(map, &status, NULL));
+  if (status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
+  PetscCall(EqmMapGetCost(map, &cost));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  seconds       %.2f\n  memory        %.0f MB in all\n  written       %s\n",
-                        (double)map->total_seconds, 1e-6 * (double)map->memory_total, options->output));
+                        (double)cost->total_seconds, 1e-6 * (double)cost->memory_total, options->output));
   PetscFunctionReturn(0);
 }
 

@@ -2,7 +2,7 @@
    write their slabs together. */
 #include "hdf5.h"
 #include "format.h"
-#include "store/h5.h"
+#include "h5/h5.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "intake/intake.h"
 #include "mesh/target.h"
 #include "store/keptmesh.h"
+#include "store/map_private.h"
 #include <string.h>
 
 /* What stands before a report: of which mesh it is, if there are two. */

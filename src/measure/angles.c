@@ -2,6 +2,7 @@
 #include "measure/angles.h"
 #include "geometry/simplex.h"
 #include "measure/quantile.h"
+#include "store/map_private.h"
 
 /* Angles of a triangle in degrees, corner by corner, from points of `dim` coordinates. */
 static void Angles(PetscInt dim, const PetscReal *p[3], PetscReal angle[3])

@@ -3,7 +3,6 @@
 #define EQM_ANGLES_H
 
 #include <equimap/map.h>
-#include <equimap/mesh.h>
 
 /* Fill angle_error, angle_histogram and quasiconformal of the distortion, and quasi_conformal per cell, from the places
    of local vertices, map->dim each. Collective. */

@@ -1,9 +1,10 @@
 /* Distortion of a map as the papers measure it; every number from the coordinates alone. */
-#include <equimap/solver.h>
+#include <equimap/energy.h>
 #include <float.h>
 #include "geometry/simplex.h"
 #include "measure/angles.h"
 #include "measure/quantile.h"
+#include "store/map_private.h"
 
 /* Signed measure of every local cell; a mirrored map is turned: folds are counted against the majority. */
 static PetscErrorCode ImageMeasures(EqmMap map, EqmMesh mesh, const PetscReal *x, PetscReal *a)
@@ -96,6 +97,7 @@ PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x)
   map->distortion.energy = totals.energy;
   map->distortion.image_measure = totals.total;
   map->distortion.mesh_measure = mesh->measure;
+  map->num_boundary_vertices = mesh->num_boundary_vertices;
   if (mesh->cell_size == 3) PetscCall(StoreConformalFactor(map, mesh, a));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) a[c] /= mesh->weight[c] * totals.total;
   PetscCall(StoreRatios(map, mesh, a));

@@ -1,5 +1,6 @@
 /* The loop that all methods share: start, iterate, judge, stop. */
 #include "method/method.h"
+#include "store/map_private.h"
 #include <string.h>
 
 PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *out)
@@ -282,7 +283,7 @@ static PetscErrorCode TakeHistory(EqmSolver solver, EqmMap map)
 
   PetscFunctionBegin;
   PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
-  map->work = *work;
+  map->cost.work = *work;
   map->iterations = solver->iteration;
   map->num_history = solver->num_history;
   PetscCall(PetscMalloc1(solver->num_history, &map->history));
@@ -291,7 +292,7 @@ static PetscErrorCode TakeHistory(EqmSolver solver, EqmMap map)
   map->energy_final = solver->totals.energy;
   map->status = solver->status;
   map->num_boundary_vertices = solver->mesh->num_boundary_vertices;
-  map->ranks = solver->mesh->size;
+  map->cost.ranks = solver->mesh->size;
   PetscCall(PetscStrncpy(map->message, solver->message, sizeof(map->message)));
   PetscCall(PetscStrncpy(map->method, solver->method->name, sizeof(map->method)));
   PetscCall(PetscStrncpy(map->linear_solver, solver->linear_solver, sizeof(map->linear_solver)));

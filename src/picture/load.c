@@ -1,6 +1,6 @@
 /* A result file, read back to be looked at. */
 #include "picture.h"
-#include "store/h5.h"
+#include "h5/h5.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

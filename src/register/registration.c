@@ -151,7 +151,7 @@ static PetscErrorCode TakeRun(EqmRegistration r, EqmMap to)
 
   PetscFunctionBegin;
   PetscCall(EqmLedgerGetWork(r->ledger, &work));
-  to->work = *work;
+  to->cost.work = *work;
   to->iterations = from->iterations;
   to->num_history = from->num_history;
   PetscCall(PetscMalloc1(from->num_history, &to->history));

@@ -7,6 +7,7 @@
 #include "register/landmark_list.h"
 #include "register/origin.h"
 #include "base/stop.h"
+#include "store/map_private.h"
 
 typedef enum { EQM_BY_DIRECT, EQM_BY_MIDPOINTS } EqmRegisterBy;
 typedef enum { EQM_LANDMARKS_FLOW, EQM_LANDMARKS_ROTATION } EqmLandmarkStart;

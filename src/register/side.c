@@ -3,7 +3,7 @@
 #include "register/closest.h"
 #include "base/lookup.h"
 #include "method/method.h"
-#include "store/h5.h"
+#include "h5/h5.h"
 #include "store/keptmesh.h"
 #include "store/store.h"
 #include <math.h>
@@ -128,7 +128,7 @@ static PetscErrorCode TakeMended(EqmRegistration r, EqmSide *side, const char *f
   PetscCall(EqmMapCreate(intake->mapped, r->dim, &side->map));
   PetscCall(EqmMeshVerticesToInput(side->mesh, intake->mapped, r->dim, side->x, side->map->coordinates));
   PetscCall(PetscStrncpy(side->map->method, side->read->method, sizeof(side->map->method)));
-  side->read->mended = side->map;
+  side->read->repaired = side->map;
   side->read->parent = intake->parent;
   side->read->repair = intake->repair;
   PetscFunctionReturn(0);

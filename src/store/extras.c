@@ -1,5 +1,6 @@
 /* What a command adds to a result beyond the map: arrays for the result file, figures for it and for the summary. */
-#include <equimap/map.h>
+#include "store/map_private.h"
+#include "store/store.h"
 
 static PetscErrorCode AddArray(EqmMap map, const char *path, PetscInt total, PetscInt start, PetscInt count,
                                PetscInt width, EqmMapArray **array)
@@ -35,13 +36,14 @@ PetscErrorCode EqmMapAddIntegers(EqmMap map, const char *path, PetscInt total, P
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AddFigure(EqmMap map, const char *key, EqmMapFigure **figure)
+static PetscErrorCode AddFigure(EqmMap map, const char *key, EqmFigureKind kind, EqmMapFigure **figure)
 {
   PetscFunctionBegin;
   PetscCall(PetscRealloc(sizeof(EqmMapFigure) * (size_t)(map->num_figures + 1), &map->figures));
   *figure = &map->figures[map->num_figures++];
   PetscCall(PetscMemzero(*figure, sizeof(**figure)));
   PetscCall(PetscStrncpy((*figure)->key, key, sizeof((*figure)->key)));
+  (*figure)->kind = kind;
   PetscFunctionReturn(0);
 }
 
@@ -50,8 +52,18 @@ PetscErrorCode EqmMapAddFigure(EqmMap map, const char *key, PetscReal value)
   EqmMapFigure *figure;
 
   PetscFunctionBegin;
-  PetscCall(AddFigure(map, key, &figure));
-  figure->value = value;
+  PetscCall(AddFigure(map, key, EQM_FIGURE_REAL, &figure));
+  figure->real = value;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMapAddCount(EqmMap map, const char *key, PetscInt64 value)
+{
+  EqmMapFigure *figure;
+
+  PetscFunctionBegin;
+  PetscCall(AddFigure(map, key, EQM_FIGURE_COUNT, &figure));
+  figure->count = value;
   PetscFunctionReturn(0);
 }
 
@@ -60,14 +72,12 @@ PetscErrorCode EqmMapAddText(EqmMap map, const char *key, const char *text)
   EqmMapFigure *figure;
 
   PetscFunctionBegin;
-  PetscCall(AddFigure(map, key, &figure));
-  figure->is_text = PETSC_TRUE;
+  PetscCall(AddFigure(map, key, EQM_FIGURE_TEXT, &figure));
   PetscCall(PetscStrncpy(figure->text, text, sizeof(figure->text)));
   PetscFunctionReturn(0);
 }
 
-/* Free all of them. Not collective. */
-PetscErrorCode EqmMapDropExtras(EqmMap map)
+PetscErrorCode EqmMapResetExtras(EqmMap map)
 {
   PetscFunctionBegin;
   for (PetscInt k = 0; k < map->num_arrays; k++) {

@@ -1,5 +1,6 @@
 /* The histogram of angle errors as CSV: a header and one row per bin. */
-#include "store.h"
+#include "store/map_private.h"
+#include "store/store.h"
 #include "base/atomicfile.h"
 
 static void PrintHistogram(EqmAtomicFile *file, void *context)

@@ -1,5 +1,6 @@
 /* The image mesh: the input's cells with every vertex at its image, in any mesh format. */
-#include "store.h"
+#include "store/map_private.h"
+#include "store/store.h"
 #include "format/format.h"
 #include "base/rows.h"
 

@@ -4,8 +4,9 @@
 #include "base/quiet.h"
 #include "format/hdf5.h"
 #include "mesh/build.h"
-#include "store/h5.h"
+#include "h5/h5.h"
 #include "store/state.h"
+#include "store/map_private.h"
 #include "store/store.h"
 #include <libgen.h>
 #include <string.h>
@@ -35,12 +36,12 @@ static PetscErrorCode HasDensity(MPI_Comm comm, const char *name, PetscBool *has
   PetscFunctionReturn(0);
 }
 
-/* Of the map's places, and of those of the mended mesh. */
+/* Of the map's coordinates, and of those of the repaired mesh. */
 static PetscErrorCode ChecksumOfMap(EqmMap map, PetscInt64 *checksum)
 {
   PetscFunctionBegin;
   *checksum = 0;
-  for (EqmMap m = map; m; m = m->mended) {
+  for (EqmMap m = map; m; m = m->repaired) {
     const PetscInt64 count = (PetscInt64)m->dim * (m->soup->vertex_end - m->soup->vertex_start);
     EqmChecksum all;
     PetscCall(EqmChecksumJoin(m->soup->comm, EqmChecksumReals(count, m->coordinates), &all));

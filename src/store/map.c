@@ -1,11 +1,10 @@
-/* The answer as an object; a map read from a file. */
-#include "store.h"
-#include "h5.h"
+/* Maps: made, freed, read from a file. */
+#include "store/map_private.h"
+#include "store/store.h"
+#include "h5/h5.h"
 #include "base/rows.h"
 #include <string.h>
 
-/* An empty answer for a soup that must outlive it: coordinates and ratios zero, nothing run yet. Errors: none of its
-   own. Collective. */
 PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map)
 {
   const PetscInt num_vertices = soup->vertex_end - soup->vertex_start;
@@ -22,16 +21,17 @@ PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map)
   PetscCall(PetscCalloc1(dim * num_vertices, &new_map->coordinates));
   PetscCall(PetscCalloc1(num_cells, &new_map->cell_ratio));
   PetscCall(PetscCalloc1(num_vertices, &new_map->vertex_ratio));
-  PetscCall(PetscCalloc1(num_cells, &new_map->quasi_conformal));
-  PetscCall(PetscCalloc1(num_vertices, &new_map->conformal_factor));
+  if (soup->cell_size == 3) {
+    PetscCall(PetscCalloc1(num_cells, &new_map->quasi_conformal));
+    PetscCall(PetscCalloc1(num_vertices, &new_map->conformal_factor));
+  }
   PetscCallMPI(MPI_Comm_size(soup->comm, &size));
-  new_map->ranks = size;
-  new_map->threads = 1;
+  new_map->cost.ranks = size;
+  new_map->cost.threads = 1;
   *map = new_map;
   PetscFunctionReturn(0);
 }
 
-/* Collective. */
 PetscErrorCode EqmMapDestroy(EqmMap *map)
 {
   PetscFunctionBegin;
@@ -43,7 +43,7 @@ PetscErrorCode EqmMapDestroy(EqmMap *map)
   PetscCall(PetscFree((*map)->conformal_factor));
   PetscCall(PetscFree((*map)->history));
   PetscCall(PetscFree((*map)->hessian_eigenvalues));
-  PetscCall(EqmMapDropExtras(*map));
+  PetscCall(EqmMapResetExtras(*map));
   PetscCall(PetscFree(*map));
   PetscFunctionReturn(0);
 }
@@ -144,9 +144,6 @@ static PetscErrorCode ReadImage(EqmSoup soup, const char *file, EqmMap *map)
   PetscFunctionReturn(0);
 }
 
-/* Read the coordinates of a map of the mesh `soup`: from a result file (.h5), or from a mesh of any format whose
-   vertices are the images; with z = 0 everywhere it is a planar map. Ratios stay zero until they are measured. Errors:
-   EQM_ERR_IO, EQM_ERR_MESH (the vertex counts differ). Collective. */
 PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *map)
 {
   PetscErrorCode error;

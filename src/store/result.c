@@ -1,6 +1,7 @@
 /* The result file: the map, the mesh, the distortion, the history and where it all came from, in HDF5. */
-#include "store.h"
-#include "h5.h"
+#include "store/map_private.h"
+#include "store/store.h"
+#include "h5/h5.h"
 #include <stddef.h>
 
 static EqmSlab VertexSlab(EqmSoup soup, PetscInt width)
@@ -59,7 +60,7 @@ static const struct {
                  {"quasiconformal_mean", offsetof(struct _p_EqmMap, distortion.quasiconformal.mean)},
                  {"quasiconformal_median", offsetof(struct _p_EqmMap, distortion.quasiconformal.p50)},
                  {"quasiconformal_max", offsetof(struct _p_EqmMap, distortion.quasiconformal.max)},
-                 {"seconds_total", offsetof(struct _p_EqmMap, total_seconds)}};
+                 {"seconds_total", offsetof(struct _p_EqmMap, cost.total_seconds)}};
 #define LENGTH(table) ((int)(sizeof(table) / sizeof((table)[0])))
 
 /* And the histogram; `edges` has one entry more. */
@@ -95,13 +96,13 @@ static PetscErrorCode WriteAngles(EqmH5 h5, EqmMap map)
   PetscFunctionReturn(0);
 }
 
-/* The mended mesh and its map, so that nothing is lost. */
-static PetscErrorCode DeclareMended(EqmH5 h5, EqmMap mended)
+/* The repaired mesh and its map, so that nothing is lost. */
+static PetscErrorCode DeclareRepaired(EqmH5 h5, EqmMap repaired)
 {
-  EqmSoup soup = mended->soup;
+  EqmSoup soup = repaired->soup;
 
   PetscFunctionBegin;
-  PetscCall(EqmH5DeclareReals(h5, "/repaired/coordinates", soup->num_vertices, mended->dim));
+  PetscCall(EqmH5DeclareReals(h5, "/repaired/coordinates", soup->num_vertices, repaired->dim));
   PetscCall(EqmH5DeclareReals(h5, "/repaired/vertices", soup->num_vertices, 3));
   PetscCall(EqmH5DeclareIntegers(h5, "/repaired/cells", soup->num_cells, soup->cell_size));
   PetscCall(EqmH5DeclareIntegers(h5, "/repaired/parent", soup->num_cells, 0));
@@ -127,7 +128,7 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
     PetscCall(EqmH5DeclareIntegers(h5, history_counts[k].path, map->num_history, 0));
   if (map->num_hessian_eigenvalues)
     PetscCall(EqmH5DeclareReals(h5, "/map/hessian_eigenvalues", map->num_hessian_eigenvalues, 0));
-  if (map->mended) PetscCall(DeclareMended(h5, map->mended));
+  if (map->repaired) PetscCall(DeclareRepaired(h5, map->repaired));
   for (PetscInt k = 0; k < map->num_arrays; k++) {
     const EqmMapArray *const array = &map->arrays[k];
     if (array->is_real)
@@ -142,12 +143,12 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
 static PetscErrorCode PutProvenance(EqmH5 h5, EqmMap map)
 {
   PetscFunctionBegin;
-  PetscCall(EqmH5PutProvenance(h5, map->soup->file, map->ranks));
+  PetscCall(EqmH5PutProvenance(h5, map->soup->file, map->cost.ranks));
   PetscCall(EqmH5PutText(h5, "command", map->command));
   PetscCall(EqmH5PutText(h5, "method", map->method));
   PetscCall(EqmH5PutText(h5, "linear_solver", map->linear_solver));
   PetscCall(EqmH5PutInteger(h5, "mesh_checksum", map->soup->checksum));
-  PetscCall(EqmH5PutInteger(h5, "threads", map->threads));
+  PetscCall(EqmH5PutInteger(h5, "threads", map->cost.threads));
   PetscFunctionReturn(0);
 }
 
@@ -166,15 +167,15 @@ static PetscErrorCode PutOutcome(EqmH5 h5, EqmMap map)
     PetscCall(EqmH5PutReal(h5, map_reals[k].path, *value));
   }
   for (PetscInt k = 0; k < map->num_figures; k++) {
-    if (map->figures[k].is_text)
-      PetscCall(EqmH5PutText(h5, map->figures[k].key, map->figures[k].text));
-    else
-      PetscCall(EqmH5PutReal(h5, map->figures[k].key, map->figures[k].value));
+    const EqmMapFigure *const figure = &map->figures[k];
+    if (figure->kind == EQM_FIGURE_TEXT) PetscCall(EqmH5PutText(h5, figure->key, figure->text));
+    if (figure->kind == EQM_FIGURE_COUNT) PetscCall(EqmH5PutInteger(h5, figure->key, figure->count));
+    if (figure->kind == EQM_FIGURE_REAL) PetscCall(EqmH5PutReal(h5, figure->key, figure->real));
   }
   PetscFunctionReturn(0);
 }
 
-/* What was mended before the map could be made. */
+/* What was repaired before the map could be made. */
 static PetscErrorCode PutRepair(EqmH5 h5, const EqmRepair *repair)
 {
   PetscFunctionBegin;
@@ -203,12 +204,12 @@ static PetscErrorCode WriteIndices(EqmH5 h5, const char *path, EqmSlab slab, con
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteMended(EqmH5 h5, EqmMap mended, const PetscInt *parent)
+static PetscErrorCode WriteRepaired(EqmH5 h5, EqmMap repaired, const PetscInt *parent)
 {
-  EqmSoup soup = mended->soup;
+  EqmSoup soup = repaired->soup;
 
   PetscFunctionBegin;
-  PetscCall(EqmH5WriteReals(h5, "/repaired/coordinates", VertexSlab(soup, mended->dim), mended->coordinates));
+  PetscCall(EqmH5WriteReals(h5, "/repaired/coordinates", VertexSlab(soup, repaired->dim), repaired->coordinates));
   PetscCall(EqmH5WriteReals(h5, "/repaired/vertices", VertexSlab(soup, 3), soup->vertices));
   PetscCall(WriteIndices(h5, "/repaired/cells", CellSlab(soup, soup->cell_size), soup->cells));
   PetscCall(WriteIndices(h5, "/repaired/parent", CellSlab(soup, 0), parent));
@@ -273,7 +274,7 @@ static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
   PetscCall(WriteHistory(h5, map));
   if (map->num_hessian_eigenvalues)
     PetscCall(EqmH5WriteReals(h5, "/map/hessian_eigenvalues", HessianSlab(map, h5->rank), map->hessian_eigenvalues));
-  if (map->mended) PetscCall(WriteMended(h5, map->mended, map->parent));
+  if (map->repaired) PetscCall(WriteRepaired(h5, map->repaired, map->parent));
   PetscCall(WriteExtras(h5, map));
   PetscFunctionReturn(0);
 }
@@ -284,7 +285,7 @@ static PetscErrorCode Fill(EqmH5 h5, EqmMap map)
   PetscCall(DeclareArrays(h5, map));
   PetscCall(PutProvenance(h5, map));
   PetscCall(PutOutcome(h5, map));
-  if (map->mended) PetscCall(PutRepair(h5, &map->repair));
+  if (map->repaired) PetscCall(PutRepair(h5, &map->repair));
   PetscCall(EqmH5PutInteger(h5, "complete", 0));
   PetscCall(EqmH5Reserve(h5));
   PetscCall(WriteArrays(h5, map));

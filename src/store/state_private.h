@@ -3,7 +3,7 @@
 #define EQM_STATE_PRIVATE_H
 
 #include "store/state.h"
-#include "store/h5.h"
+#include "h5/h5.h"
 #include "base/checksum.h"
 
 enum { EQM_STATE_NAME = 96, EQM_STATE_LAYOUT = 1, EQM_STATE_LISTS = 4, EQM_STATE_LONGEST = 60000 };

@@ -1,18 +1,26 @@
-/* What the files of this room share. */
+/* What the files of this folder share, and use of others. */
 #ifndef EQM_STORE_H
 #define EQM_STORE_H
 
 #include <equimap/map.h>
 
+/* Does a name end in `suffix`, in small or capital letters? Not collective. */
 PETSC_INTERN PetscBool EqmHasSuffix(const char *name, const char *suffix);
-/* NAME.h5 -> NAME`suffix`; what does not end in .h5 gets the suffix behind. */
+/* NAME.h5 becomes NAME`suffix`; to any other name the suffix is appended. Not collective. */
 PETSC_INTERN PetscErrorCode EqmNameBeside(const char *file, const char *suffix, char *name, size_t length);
+/* Write the result file: everything about the map. Collective. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteResult(EqmMap map, const char *file);
+/* Write NAME.xmf beside the result NAME.h5 for ParaView. Collective; rank 0 writes. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file);
-/* Where frame number %d of a morph stands in the result file. */
+/* The array of the result file that holds the points of frame number %d of a morph. */
 #define EQM_FRAME_PATH "/morph/frame_%03" PetscInt_FMT
+/* Write NAME.morph.xmf beside the result NAME.h5: its frames as a time series from 0 to 1. Collective; rank 0 writes.
+   Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteMorph(EqmMap map, const char *result_file, PetscInt num_frames);
-PETSC_INTERN PetscErrorCode EqmMapDropExtras(EqmMap map);
+/* Free what EqmMapAdd... added. Not collective. */
+PETSC_INTERN PetscErrorCode EqmMapResetExtras(EqmMap map);
+/* Write the mesh with its vertices at their images (z = 0 for planar maps), with fields where the format has room.
+   Collective; rank 0 gathers and writes. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteImage(EqmMap map, const char *file);
 
 #endif

@@ -1,5 +1,6 @@
 /* The summary of a run as JSON, for scripts. */
-#include "store.h"
+#include "store/map_private.h"
+#include "store/store.h"
 #include "base/atomicfile.h"
 #include <cjson/cJSON.h>
 #include <string.h>
@@ -52,11 +53,11 @@ static void AddRun(cJSON *root, EqmMap map)
   AddNumber(mesh, "measure", map->distortion.mesh_measure);
   AddCount(mesh, "checksum", map->soup->checksum);
   parallel = cJSON_AddObjectToObject(root, "parallel");
-  AddCount(parallel, "ranks", map->ranks);
-  AddCount(parallel, "threads", map->threads);
+  AddCount(parallel, "ranks", map->cost.ranks);
+  AddCount(parallel, "threads", map->cost.threads);
 }
 
-/* Only where something was mended. */
+/* Only where something was repaired. */
 static void AddRepair(cJSON *root, const EqmRepair *repair)
 {
   cJSON *group = cJSON_AddObjectToObject(root, "repair");
@@ -147,19 +148,19 @@ static void AddCost(cJSON *root, EqmMap map)
   cJSON *group;
 
   group = cJSON_AddObjectToObject(root, "work");
-  AddCount(group, "evaluations", map->work.evaluations);
-  AddCount(group, "factorizations", map->work.factorizations);
-  AddCount(group, "coupled_factorizations", map->work.coupled_factorizations);
-  AddCount(group, "solves", map->work.solves);
-  AddCount(group, "cg_iterations", map->work.cg_iterations);
+  AddCount(group, "evaluations", map->cost.work.evaluations);
+  AddCount(group, "factorizations", map->cost.work.factorizations);
+  AddCount(group, "coupled_factorizations", map->cost.work.coupled_factorizations);
+  AddCount(group, "solves", map->cost.work.solves);
+  AddCount(group, "cg_iterations", map->cost.work.cg_iterations);
   group = cJSON_AddObjectToObject(root, "seconds");
-  AddNumber(group, "total", map->total_seconds);
-  for (int k = 0; k < EQM_NUM_PHASES; k++) AddNumber(group, phases[k].key, map->phase_seconds[phases[k].phase]);
+  AddNumber(group, "total", map->cost.total_seconds);
+  for (int k = 0; k < EQM_NUM_PHASES; k++) AddNumber(group, phases[k].key, map->cost.phase_seconds[phases[k].phase]);
   group = cJSON_AddObjectToObject(root, "events");
-  for (int k = 0; k < EQM_NUM_EVENTS; k++) AddNumber(group, events[k].key, map->event_seconds[events[k].event]);
+  for (int k = 0; k < EQM_NUM_EVENTS; k++) AddNumber(group, events[k].key, map->cost.event_seconds[events[k].event]);
   group = cJSON_AddObjectToObject(root, "memory_bytes");
-  AddCount(group, "max_per_rank", map->memory_max_per_rank);
-  AddCount(group, "total", map->memory_total);
+  AddCount(group, "max_per_rank", map->cost.memory_max_per_rank);
+  AddCount(group, "total", map->cost.memory_total);
 }
 
 /* What the command has added: dots in a key open groups. */
@@ -175,10 +176,16 @@ static void AddFigure(cJSON *root, const EqmMapFigure *figure)
                                                           : cJSON_AddObjectToObject(group, name);
     key = dot + 1;
   }
-  if (figure->is_text)
+  switch (figure->kind) {
+  case EQM_FIGURE_TEXT:
     AddText(group, key, figure->text);
-  else
-    AddNumber(group, key, figure->value);
+    break;
+  case EQM_FIGURE_COUNT:
+    AddCount(group, key, figure->count);
+    break;
+  case EQM_FIGURE_REAL:
+    AddNumber(group, key, figure->real);
+  }
 }
 
 /* NULL: there is no memory for it. */
@@ -188,7 +195,7 @@ static char *MakeSummary(EqmMap map)
   char *text;
 
   AddRun(root, map);
-  if (map->mended) AddRepair(root, &map->repair);
+  if (map->repaired) AddRepair(root, &map->repair);
   AddQuality(root, map);
   if (map->hessian_eigenvalues) AddHessian(root, map);
   for (PetscInt k = 0; k < map->num_figures; k++) AddFigure(root, &map->figures[k]);

@@ -1,5 +1,6 @@
 /* The XDMF file beside a result: XML that tells ParaView what the HDF5 file holds. */
-#include "store.h"
+#include "store/map_private.h"
+#include "store/store.h"
 #include "base/atomicfile.h"
 #include <errno.h>
 #include <libxml/xmlwriter.h>

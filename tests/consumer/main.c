@@ -9,6 +9,7 @@ static PetscErrorCode MapCap(PetscReal *initial, PetscReal *final, PetscInt64 *f
   EqmMesh mesh;
   EqmSolver solver;
   EqmMap map;
+  const EqmDistortion *distortion;
 
   PetscFunctionBegin;
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
@@ -18,9 +19,9 @@ static PetscErrorCode MapCap(PetscReal *initial, PetscReal *final, PetscInt64 *f
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmSolverSolve(solver));
   PetscCall(EqmSolverGetMap(solver, soup, &map));
-  *initial = map->energy_initial;
-  *final = map->energy_final;
-  *folds = map->distortion.folds;
+  PetscCall(EqmMapGetEnergies(map, initial, final));
+  PetscCall(EqmMapGetDistortion(map, &distortion));
+  *folds = distortion->folds;
   PetscCall(EqmMapDestroy(&map));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(EqmMeshDestroy(&mesh));

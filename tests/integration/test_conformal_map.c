@@ -2,6 +2,7 @@
    map on any number of ranks, the same bits for any number of threads. */
 #include "support/runs.h"
 #include "geometry/simplex.h"
+#include "store/map_private.h"
 
 /* Converged, no folds, small angle errors, few factorisations. */
 static PetscErrorCode TestMethod(const char *shape, PetscInt n, const char *options, PetscReal degrees)

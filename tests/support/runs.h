@@ -5,6 +5,7 @@
 #include "support/testing.h"
 #include <omp.h>
 #include <string.h>
+#include "store/map_private.h"
 
 /* Run and fetch the map in input numbering. */
 static inline PetscErrorCode TestMap(TestMesh *test, const char *target, const char *options, EqmMap *map)

@@ -1,5 +1,6 @@
 /* The double covering of a surface, and the Riemann map by way of it. */
 #include "support/testing.h"
+#include "store/map_private.h"
 
 /* Half-edges of the soup's slab whose partner is missing, over all ranks. The whole mesh is small. */
 static PetscErrorCode CountOpenEdges(EqmSoup soup, PetscInt *num_open)
@@ -124,7 +125,7 @@ static PetscErrorCode Compare(PetscInt n, PetscBool flat, EqmDistortion *distort
   PetscCall(EqmSolverGetMap(solver, test.soup, &map));
   *distortion = map->distortion;
   CHECK(map->status == EQM_STATUS_CONVERGED, "%s", map->message);
-  CHECK(map->work.factorizations > 1, "%d factorisations", (int)map->work.factorizations);
+  CHECK(map->cost.work.factorizations > 1, "%d factorisations", (int)map->cost.work.factorizations);
   CHECK(map->num_history == map->iterations + 1, "%d rows", (int)map->num_history);
   PetscCall(EqmMapDestroy(&map));
   for (PetscInt v = 0; v < test.mesh->num_local; v++) {

@@ -1,6 +1,7 @@
 /* Statistics of distributed samples against a serial sort; distortion of maps whose distortion is known. */
 #include "support/testing.h"
 #include "measure/quantile.h"
+#include "store/map_private.h"
 
 /* The value at fraction q of a sorted array, linear between neighbours. */
 static PetscReal Quantile(PetscInt n, const PetscReal *sorted, PetscReal q)

@@ -2,6 +2,7 @@
 #include "support/testing.h"
 #include "method/loopmetric.h"
 #include "method/riemann.h"
+#include "store/map_private.h"
 
 /* Angles at random, the same on any number of ranks. */
 static PetscErrorCode RandomAngles(EqmSolver solver, EqmRiemann riemann, PetscInt seed, Vec angles)
@@ -143,7 +144,7 @@ static PetscErrorCode CapError(PetscInt n, PetscBool flat, PetscReal *error, Eqm
   PetscCall(EqmSolverGetMap(solver, test.soup, &map));
   *distortion = map->distortion;
   CHECK(map->status == EQM_STATUS_CONVERGED, "%s", map->message);
-  CHECK(map->work.factorizations == 1, "%d factorisations", (int)map->work.factorizations);
+  CHECK(map->cost.work.factorizations == 1, "%d factorisations", (int)map->cost.work.factorizations);
   PetscCall(EqmMapDestroy(&map));
   PetscCall(PetscFree(exact));
   PetscCall(EqmSolverDestroy(&solver));

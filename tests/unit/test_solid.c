@@ -1,6 +1,7 @@
 /* The distributed solid and the surface around it: orientation, stars, measures, the same surface on any number of
    ranks, values carried there and back; what repair does to a solid, and a map brought back from there. */
 #include "support/testing.h"
+#include "store/map_private.h"
 
 /* Turn over the tetrahedra that `which` picks. */
 static void TurnOver(EqmSoup soup, PetscBool (*which)(PetscInt cell))

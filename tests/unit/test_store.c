@@ -4,7 +4,8 @@
 #include <math.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include "store/h5.h"
+#include "h5/h5.h"
+#include "store/map_private.h"
 
 #define CHECK(condition)                                                                                               \
   PetscCheck(condition, PETSC_COMM_SELF, PETSC_ERR_PLIB, "line %d: not true: %s", __LINE__, #condition)

@@ -1,5 +1,5 @@
 /* Arrays of HDF5 files: declared, then written or read in slabs, all collectively. */
-#include "h5.h"
+#include "h5/h5.h"
 
 /* Groups on the way are made as needed; no fill values, for every entry will be written. */
 static PetscErrorCode Declare(EqmH5 h5, const char *path, hid_t type, PetscInt total, PetscInt width)

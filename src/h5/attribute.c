@@ -1,5 +1,5 @@
 /* Attributes of HDF5 files: of the root, and of arrays. */
-#include "h5.h"
+#include "h5/h5.h"
 #include <string.h>
 #include <time.h>
 

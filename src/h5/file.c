@@ -1,44 +1,12 @@
-/* Open, create, commit and abandon HDF5 files; what HDF5 says when it fails. */
-#include "h5.h"
+/* Open, create, commit and abandon HDF5 files. */
+#include "h5/h5.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { CUSHION = 1 << 17 }; /* bytes */
-
-typedef struct {
-  char *text;
-  size_t length;
-} Reason;
-
-static herr_t TakeDescription(unsigned n, const H5E_error2_t *entry, void *context)
-{
-  Reason *reason = (Reason *)context;
-
-  (void)n;
-  if (!entry->desc || !entry->desc[0]) return 0;
-  (void)snprintf(reason->text, reason->length, "%s", entry->desc);
-  return 1; /* the innermost cause is enough */
-}
-
-/* All ranks fail with EQM_ERR_IO if one of them is not fine; the message names the file, `what` and HDF5's innermost
-   cause. Collective. */
-PetscErrorCode EqmH5Agree(EqmH5 h5, PetscBool fine, const char *what)
-{
-  char reason[512] = "", message[EQM_MESSAGE_MAX] = "";
-  Reason context = {reason, sizeof(reason)};
-
-  PetscFunctionBegin;
-  if (!fine) {
-    (void)H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, TakeDescription, &context);
-    (void)snprintf(message, sizeof(message), "cannot %s '%.1000s': %s%s%s%s", h5->writing ? "write" : "read", h5->name,
-                   what, reason[0] ? " (HDF5: " : "", reason, reason[0] ? ")" : "");
-  }
-  PetscCall(EqmAgree(h5->comm, fine ? 0 : EQM_ERR_IO, message));
-  PetscFunctionReturn(0);
-}
+enum { RESERVED = 1 << 17 }; /* bytes of disk space */
 
 static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, EqmH5 *out)
 {
@@ -48,7 +16,7 @@ static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, 
   PetscCall(PetscNew(&h5));
   h5->comm = comm;
   h5->file = h5->transfer = H5I_INVALID_HID;
-  h5->cushion = -1;
+  h5->reserved = -1;
   h5->writing = writing;
   PetscCallMPI(MPI_Comm_rank(comm, &h5->rank));
   PetscCall(PetscStrncpy(h5->name, name, sizeof(h5->name)));
@@ -58,10 +26,10 @@ static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, 
   PetscFunctionReturn(0);
 }
 
-static void DropCushion(EqmH5 h5)
+static void ReleaseReserved(EqmH5 h5)
 {
-  if (h5->cushion >= 0) (void)close(h5->cushion);
-  h5->cushion = -1;
+  if (h5->reserved >= 0) (void)close(h5->reserved);
+  h5->reserved = -1;
 }
 
 /* Close the handles of a file, whatever state it is in; a file that was not committed leaves nothing behind. */
@@ -71,7 +39,7 @@ static PetscBool End(EqmH5 *handle)
   PetscBool fine = PETSC_TRUE;
 
   if (!h5) return PETSC_TRUE;
-  DropCushion(h5);
+  ReleaseReserved(h5);
   if (h5->transfer >= 0 && H5Pclose(h5->transfer) < 0) fine = PETSC_FALSE;
   if (h5->file >= 0 && H5Fclose(h5->file) < 0) fine = PETSC_FALSE;
   if (h5->writing && h5->rank == 0) EqmAtomicAbort(&h5->atomic);
@@ -128,17 +96,17 @@ static PetscErrorCode OpenHandles(EqmH5 h5)
 /* HDF5 cannot give a file up: it writes headers even while it closes a file for which there is no room, and crashes
    later if that fails. So the room for headers is taken first, in a file without a name, and given back when the room
    for the rest has been taken, or has not been found. 0 or the error number. */
-static int TakeCushion(EqmH5 h5)
+static int ReserveForHeaders(EqmH5 h5)
 {
   char message[EQM_MESSAGE_MAX];
-  EqmAtomicFile nameless;
+  EqmAtomicFile unnamed;
   int failed;
 
-  if (EqmAtomicBegin(h5->name, &nameless, message, sizeof(message))) return 0; /* the temporary itself was possible */
-  h5->cushion = open(nameless.temporary, O_WRONLY | O_CLOEXEC);
-  EqmAtomicAbort(&nameless);
-  if (h5->cushion < 0) return 0;
-  failed = posix_fallocate(h5->cushion, 0, CUSHION);
+  if (EqmAtomicBegin(h5->name, &unnamed, message, sizeof(message))) return 0; /* the temporary itself was possible */
+  h5->reserved = open(unnamed.temporary, O_WRONLY | O_CLOEXEC);
+  EqmAtomicAbort(&unnamed);
+  if (h5->reserved < 0) return 0;
+  failed = posix_fallocate(h5->reserved, 0, RESERVED);
   return failed == EINVAL || failed == EOPNOTSUPP ? 0 : failed;
 }
 
@@ -156,7 +124,7 @@ static PetscErrorCode MakeTemporary(EqmH5 h5)
       error = EQM_ERR_IO;
       (void)snprintf(message, sizeof(message), "cannot write '%.1000s': an HDF5 file must be a regular file", h5->name);
     }
-    failed = error ? 0 : TakeCushion(h5);
+    failed = error ? 0 : ReserveForHeaders(h5);
     if (failed) {
       error = EQM_ERR_IO;
       (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s", h5->name, strerror(failed));
@@ -257,7 +225,7 @@ PetscErrorCode EqmH5Reserve(EqmH5 h5)
   PetscFunctionBegin;
   PetscCall(EqmH5Agree(h5, (PetscBool)(H5Fget_filesize(h5->file, &size) >= 0), "its arrays cannot be laid out"));
   if (h5->rank == 0) failed = ReserveBytes(h5->atomic.temporary, (off_t)size);
-  DropCushion(h5);
+  ReleaseReserved(h5);
   if (failed) {
     (void)snprintf(message, sizeof(message), "cannot write '%.1000s': %s (it takes %.1f MB)", h5->name,
                    strerror(failed), (double)size / 1e6);

@@ -1,7 +1,7 @@
 /* A thin, collective layer over parallel HDF5: every call's result is checked on every rank, and all ranks fail alike.
    Files are replaced whole: written under another name, forced to the disk, renamed. */
-#ifndef EQM_STORE_H5_H
-#define EQM_STORE_H5_H
+#ifndef EQM_H5_H
+#define EQM_H5_H
 
 #include <hdf5.h>
 #include <equimap/base.h>
@@ -15,7 +15,7 @@ struct _p_EqmH5 {
   PetscBool writing;             /* a new file, under its temporary name until it is committed */
   char name[PETSC_MAX_PATH_LEN]; /* the name that the user gave */
   EqmAtomicFile atomic;          /* where a new file grows; rank 0 keeps it, all know its temporary name */
-  int cushion;                   /* rank 0: descriptor of disk space kept free for an orderly retreat; -1: none */
+  int reserved;                  /* rank 0: descriptor of disk space that is reserved for the headers; -1: none */
   H5E_auto2_t printer;           /* HDF5's own error printing, silenced while the file is open */
   void *printer_data;
 };
