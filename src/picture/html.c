@@ -1,6 +1,7 @@
 /* One self-contained page: the picture, the numbers, where it came from, the history. */
 #ifdef EQM_HAVE_CAIRO
 #include "html.h"
+#include "picture/surface.h"
 #include <math.h>
 
 /* Bytes to base64, three at a time; what is left over waits for the next piece. */

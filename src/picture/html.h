@@ -6,8 +6,6 @@
 #include "base/atomicfile.h"
 #include "picture.h"
 
-PETSC_INTERN PetscErrorCode EqmPageToPng(const EqmResult *result, int width, cairo_write_func_t write, void *closure,
-                                         cairo_status_t *status);
 PETSC_INTERN PetscErrorCode EqmWriteHtml(const EqmResult *result, int width, EqmAtomicFile *file,
                                          cairo_status_t *status);
 

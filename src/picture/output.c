@@ -6,6 +6,7 @@
 #include "base/atomicfile.h"
 #include "page.h"
 #include "html.h"
+#include "picture/surface.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 
@@ -17,34 +18,6 @@ static cairo_status_t Append(void *closure, const unsigned char *bytes, unsigned
   return file->error_number ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
 }
 
-/* Draw on a surface and take both apart; `scale` page units to the surface's own. */
-static PetscErrorCode DrawOn(cairo_surface_t *surface, const EqmResult *result, double scale, double pixels_per_unit)
-{
-  cairo_t *page = cairo_create(surface);
-
-  PetscFunctionBegin;
-  cairo_scale(page, scale, scale);
-  PetscCall(EqmDrawPage(page, result, pixels_per_unit));
-  cairo_show_page(page);
-  cairo_destroy(page);
-  PetscFunctionReturn(0);
-}
-
-/* Draw the page as a PNG of `width` pixels and hand it piece by piece to `write`. Not collective. */
-PetscErrorCode EqmPageToPng(const EqmResult *result, int width, cairo_write_func_t write, void *closure,
-                            cairo_status_t *status)
-{
-  const double scale = width / EQM_PAGE_WIDTH;
-  cairo_surface_t *surface =
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, (int)(scale * EqmPageHeight(result)));
-
-  PetscFunctionBegin;
-  PetscCall(DrawOn(surface, result, scale, scale));
-  *status = cairo_surface_write_to_png_stream(surface, write, closure);
-  cairo_surface_destroy(surface);
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode DrawVectors(const EqmResult *result, EqmAtomicFile *file, PetscBool svg, int width,
                                   cairo_status_t *status)
 {
@@ -54,7 +27,7 @@ static PetscErrorCode DrawVectors(const EqmResult *result, EqmAtomicFile *file, 
           : cairo_pdf_surface_create_for_stream(Append, file, 0.5 * EQM_PAGE_WIDTH, 0.5 * height);
 
   PetscFunctionBegin;
-  PetscCall(DrawOn(surface, result, svg ? 1.0 : 0.5, width / EQM_PAGE_WIDTH));
+  PetscCall(EqmDrawOn(surface, result, svg ? 1.0 : 0.5, width / EQM_PAGE_WIDTH));
   cairo_surface_finish(surface);
   *status = cairo_surface_status(surface);
   cairo_surface_destroy(surface);

@@ -1,0 +1,31 @@
+/* The page on a cairo surface; as a PNG. */
+#ifdef EQM_HAVE_CAIRO
+#include "picture/surface.h"
+#include "picture/page.h"
+
+PetscErrorCode EqmDrawOn(cairo_surface_t *surface, const EqmResult *result, double scale, double pixels_per_unit)
+{
+  cairo_t *page = cairo_create(surface);
+
+  PetscFunctionBegin;
+  cairo_scale(page, scale, scale);
+  PetscCall(EqmDrawPage(page, result, pixels_per_unit));
+  cairo_show_page(page);
+  cairo_destroy(page);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmPageToPng(const EqmResult *result, int width, cairo_write_func_t write, void *closure,
+                            cairo_status_t *status)
+{
+  const double scale = width / EQM_PAGE_WIDTH;
+  cairo_surface_t *surface =
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, (int)(scale * EqmPageHeight(result)));
+
+  PetscFunctionBegin;
+  PetscCall(EqmDrawOn(surface, result, scale, scale));
+  *status = cairo_surface_write_to_png_stream(surface, write, closure);
+  cairo_surface_destroy(surface);
+  PetscFunctionReturn(0);
+}
+#endif
