@@ -3,14 +3,7 @@
 #define EQM_MESH_BUILD_H
 
 #include <equimap/mesh.h>
-
-/* The cells around the vertices that a rank owns, as they arrive: each with its input number, its vertices in input
-   numbering and their owners. */
-typedef struct {
-  PetscInt cell_size, num_cells;
-  PetscInt *records; /* per cell: input cell number, cell_size vertices, cell_size owners */
-  PetscInt width;    /* integers per record */
-} EqmStars;
+#include "mesh/cells.h"
 
 /* A graph in compressed rows. */
 typedef struct {
@@ -23,8 +16,6 @@ PETSC_INTERN PetscErrorCode EqmMeshNumberInOrder(EqmMesh mesh, PetscInt num_leav
                                                  PetscInt *number);
 PETSC_INTERN PetscErrorCode EqmSoupComputeChecksum(EqmSoup soup);
 PETSC_INTERN PetscErrorCode EqmSoupComputeIdentity(EqmSoup soup, PetscInt64 *identity);
-PETSC_INTERN PetscErrorCode EqmStarsCollect(EqmSoup soup, const PetscInt *owner_of_slab, EqmStars *stars);
-PETSC_INTERN PetscErrorCode EqmStarsReset(EqmStars *stars);
 PETSC_INTERN PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *vertices, PetscSF *sf);
 PETSC_INTERN PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_size, PetscInt num_cells,
                                             const PetscInt *cells, EqmGraph *graph);

@@ -5,6 +5,7 @@
 
 #include <petscsf.h>
 #include <equimap/soup.h>
+#include "mesh/cells.h"
 
 /* The usable cells (existing, distinct vertices) around the vertices of this rank's slab. Local vertices: the slab's
    first, then ghosts by input number. A cell and an edge belong to the rank of their vertex of lowest input number. */
@@ -25,6 +26,7 @@ typedef struct {
   PetscInt *star;       /* the cells around owned vertex v: star[star_start[v]] .. */
 } EqmVicinity;
 
+PETSC_INTERN PetscErrorCode EqmVicinityCreateCells(EqmSoup soup, EqmVicinity *vicinity);
 PETSC_INTERN PetscErrorCode EqmVicinityCreate(EqmSoup soup, EqmVicinity *vicinity);
 PETSC_INTERN PetscErrorCode EqmVicinityReset(EqmVicinity *vicinity);
 PETSC_INTERN PetscErrorCode EqmVicinityFindDuplicates(const EqmVicinity *vicinity, PetscInt *first);
@@ -32,10 +34,6 @@ PETSC_INTERN PetscErrorCode EqmVicinityDropDuplicates(EqmVicinity *vicinity, Pet
 PETSC_INTERN PetscErrorCode EqmVicinityCellSF(const EqmVicinity *vicinity, PetscSF *sf);
 PETSC_INTERN PetscInt EqmVicinityCellOwnerVertex(const EqmVicinity *vicinity, PetscInt cell);
 PETSC_INTERN PetscReal EqmCellMeasure(const EqmVicinity *vicinity, PetscInt cell, PetscReal *quality);
-
-/* Whether a cell of a soup names only vertices that exist, and none twice. */
-typedef enum { EQM_CELL_USABLE, EQM_CELL_BAD_INDEX, EQM_CELL_REPEATED_VERTEX } EqmCellUse;
-PETSC_INTERN EqmCellUse EqmSoupCellUse(EqmSoup soup, const PetscInt *cell);
 
 /* The link of a vertex: what its star looks like from outside. Arrays are reused from vertex to vertex. */
 typedef struct {

@@ -1,83 +1,26 @@
 /* Collect the cells around each rank's slab of vertices. */
 #include "mesh/diagnose.h"
+#include "mesh/build.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 #include "geometry/simplex.h"
 
-/* Tell whether a cell of the soup (its `cell_size` input vertex numbers) can be looked at. Not collective. */
-EqmCellUse EqmSoupCellUse(EqmSoup soup, const PetscInt *cell)
-{
-  EqmCellUse use = EQM_CELL_USABLE;
-
-  for (PetscInt a = 0; a < soup->cell_size; a++) {
-    if (cell[a] < 0 || cell[a] >= soup->num_vertices) return EQM_CELL_BAD_INDEX;
-    for (PetscInt b = 0; b < a; b++) {
-      if (cell[a] == cell[b]) use = EQM_CELL_REPEATED_VERTEX;
-    }
-  }
-  return use;
-}
-
-/* Usable cells of this slab as records (input number, vertices), one per rank that owns a vertex of it. With
-   `destination` NULL they are only counted. */
-static PetscErrorCode PackCells(EqmSoup soup, PetscLayout layout, PetscInt *count, PetscInt *records,
-                                PetscMPIInt *destination)
-{
-  const PetscInt cs = soup->cell_size;
-
-  PetscFunctionBegin;
-  *count = 0;
-  for (PetscInt c = soup->cell_start; c < soup->cell_end; c++) {
-    const PetscInt *const cell = soup->cells + cs * (c - soup->cell_start);
-    PetscMPIInt owner[4];
-
-    if (EqmSoupCellUse(soup, cell) != EQM_CELL_USABLE) continue;
-    for (PetscInt a = 0; a < cs; a++) {
-      PetscBool seen = PETSC_FALSE;
-
-      if (layout->size == 1)
-        owner[a] = 0;
-      else
-        PetscCall(PetscLayoutFindOwner(layout, cell[a], &owner[a]));
-      for (PetscInt b = 0; b < a; b++) seen = (PetscBool)(seen || owner[a] == owner[b]);
-      if (seen) continue;
-      if (destination) {
-        destination[*count] = owner[a];
-        records[(1 + cs) * *count] = c;
-        for (PetscInt b = 0; b < cs; b++) records[(1 + cs) * *count + 1 + b] = cell[b];
-      }
-      ++*count;
-    }
-  }
-  PetscFunctionReturn(0);
-}
-
+/* The usable cells around the vertices of this rank's slab, in input order. */
 static PetscErrorCode CollectCells(EqmSoup soup, EqmVicinity *vicinity)
 {
   const PetscInt cs = soup->cell_size;
-  PetscInt count, *records, *received;
-  PetscMPIInt *destination;
+  EqmStars stars;
 
   PetscFunctionBegin;
-  PetscCall(PackCells(soup, vicinity->layout, &count, NULL, NULL));
-  PetscCall(PetscMalloc1((1 + cs) * count, &records));
-  PetscCall(PetscMalloc1(count, &destination));
-  PetscCall(PackCells(soup, vicinity->layout, &count, records, destination));
-  if (vicinity->size == 1) {
-    received = records;
-    vicinity->num_cells = count;
-  } else {
-    PetscCall(EqmExchange(soup->comm, count, 1 + cs, destination, records, &vicinity->num_cells, &received));
-    PetscCall(PetscFree(records));
-  }
-  PetscCall(PetscFree(destination));
+  PetscCall(EqmStarsCollect(soup, NULL, &stars));
+  vicinity->num_cells = stars.num_cells;
   PetscCall(PetscMalloc1(vicinity->num_cells, &vicinity->cell_input));
   PetscCall(PetscMalloc1(cs * vicinity->num_cells, &vicinity->cells));
   for (PetscInt c = 0; c < vicinity->num_cells; c++) {
-    vicinity->cell_input[c] = received[(1 + cs) * c];
-    for (PetscInt a = 0; a < cs; a++) vicinity->cells[cs * c + a] = received[(1 + cs) * c + 1 + a];
+    vicinity->cell_input[c] = stars.records[stars.width * c];
+    for (PetscInt a = 0; a < cs; a++) vicinity->cells[cs * c + a] = stars.records[stars.width * c + 1 + a];
   }
-  PetscCall(PetscFree(received));
+  PetscCall(EqmStarsReset(&stars));
   PetscFunctionReturn(0);
 }
 
@@ -169,9 +112,9 @@ static PetscErrorCode MakeStars(EqmVicinity *vicinity)
   PetscFunctionReturn(0);
 }
 
-/* Build the view of a soup: every rank gets all usable cells around the vertices of its slab, and the positions of all
-   their vertices. Free with EqmVicinityReset. Collective. */
-PetscErrorCode EqmVicinityCreate(EqmSoup soup, EqmVicinity *vicinity)
+/* The cells and vertices of a vicinity alone: without positions, sides and stars. Free with EqmVicinityReset.
+   Collective. */
+PetscErrorCode EqmVicinityCreateCells(EqmSoup soup, EqmVicinity *vicinity)
 {
   PetscFunctionBegin;
   PetscCall(PetscMemzero(vicinity, sizeof(*vicinity)));
@@ -183,6 +126,15 @@ PetscErrorCode EqmVicinityCreate(EqmSoup soup, EqmVicinity *vicinity)
                                        &vicinity->layout));
   PetscCall(CollectCells(soup, vicinity));
   PetscCall(NumberVertices(vicinity));
+  PetscFunctionReturn(0);
+}
+
+/* Build the view of a soup: every rank gets all usable cells around the vertices of its slab, and the positions of all
+   their vertices. Free with EqmVicinityReset. Collective. */
+PetscErrorCode EqmVicinityCreate(EqmSoup soup, EqmVicinity *vicinity)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmVicinityCreateCells(soup, vicinity));
   PetscCall(CollectPositions(soup, vicinity));
   PetscCall(FindSides(vicinity));
   PetscCall(PetscMalloc1(vicinity->num_owned + 1, &vicinity->star_start));

@@ -1,5 +1,5 @@
 /* Test surfaces and solids of any size, the same on any number of ranks. */
-#include "generate.h"
+#include "mesh/generate.h"
 
 typedef struct {
   const char *name, *description;
@@ -25,21 +25,6 @@ static const EqmShape shape_table[EQM_NUM_SHAPES] = {
     {"annulus", "flat ring with two boundary loops (bad input)", &EqmLatticeAnnulus, EqmPlaceAnnulus},
     {"moebius", "Moebius band, not orientable (bad input)", &EqmLatticeMoebius, EqmPlaceMoebius},
 };
-
-PetscReal EqmHashUniform(PetscInt seed, PetscInt index, PetscInt channel)
-{
-  /* splitmix64 over the three numbers, one after the other */
-  PetscInt64 part[3] = {seed, index, channel};
-  uint64_t x = 0x9e3779b97f4a7c15u;
-
-  for (int i = 0; i < 3; i++) {
-    x += (uint64_t)part[i] + 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    x ^= x >> 31;
-  }
-  return (PetscReal)(x >> 11) * (1.0 / 9007199254740992.0);
-}
 
 /* Names and one-line descriptions of the shapes that EqmSoupGenerate makes; the arrays are PetscMalloc'ed and the
    caller's to PetscFree, the strings are constant. Any of the outputs may be NULL. Not collective. */

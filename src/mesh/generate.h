@@ -3,6 +3,7 @@
 #define EQM_GENERATE_H
 
 #include <equimap/soup.h>
+#include "base/random.h"
 
 /* A lattice of a certain size. Which of the numbers mean something depends on the lattice. */
 typedef struct {
@@ -42,9 +43,6 @@ PETSC_INTERN void EqmPlaceCube(const EqmLatticePlan *, const PetscReal[3], Petsc
 PETSC_INTERN void EqmPlaceBall(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN void EqmPlaceFigure(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN void EqmPlaceBlob(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
-
-/* A number in [0, 1) that depends on its arguments alone. */
-PETSC_INTERN PetscReal EqmHashUniform(PetscInt seed, PetscInt index, PetscInt channel);
 
 /* How far a vertex may be moved, in spacings: far enough to be irregular, near enough for no triangle to turn over. */
 static inline PetscReal EqmLatticeJitter(const EqmLatticePlan *plan, PetscInt vertex, PetscInt channel)

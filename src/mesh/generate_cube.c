@@ -1,7 +1,7 @@
 /* Cubes of tetrahedra: 2 h x 2 h x 2 h small cubes, six tetrahedra each, mirrored at the middle planes so that every
    small cube's diagonal points to the centre: no edge then cuts a corner and no tetrahedron lies in the boundary;
    size[0] = 2 h. */
-#include "generate.h"
+#include "mesh/generate.h"
 
 static void PlanCube(PetscInt n, EqmLatticePlan *plan)
 {

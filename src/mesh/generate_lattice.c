@@ -1,6 +1,6 @@
 /* Lattices of the test shapes: rectangles and their closed kin, a hexagon in rings, the subdivided icosahedron in rows.
    Numbers run row by row. */
-#include "generate.h"
+#include "mesh/generate.h"
 
 /* ---- rectangles: size[0] columns, size[1] rows of vertices ---- */
 

@@ -1,7 +1,7 @@
 /* Noise for studies of stability (001 section 6.5): every vertex moves along its normal by a random length. */
 #include "mesh/diagnose.h"
 #include "mesh/build.h"
-#include "mesh/generate.h"
+#include "base/random.h"
 #include "geometry/simplex.h"
 
 /* The cell's normal, as long as twice its area. */

@@ -1,65 +1,19 @@
 /* Which rank owns which vertex: METIS on the vertex graph. */
 #include "mesh/build.h"
-#include <metis.h>
+#include "mesh/diagnose.h"
 
 /* The graph rows of this rank's slab of vertices, neighbours in input numbering. */
 static PetscErrorCode SlabGraph(EqmSoup soup, EqmGraph *graph)
 {
-  const PetscInt num_rows = soup->vertex_end - soup->vertex_start, cs = soup->cell_size;
-  PetscInt *owner, *cells, *others, num_others = 0;
-  PetscMPIInt rank;
-  EqmStars stars;
+  EqmVicinity vicinity;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
-  PetscCall(PetscMalloc1(num_rows, &owner));
-  for (PetscInt i = 0; i < num_rows; i++) owner[i] = rank;
-  PetscCall(EqmStarsCollect(soup, owner, &stars));
-  PetscCall(PetscFree(owner));
-  /* local numbers: the slab first, then the other vertices that its cells name */
-  PetscCall(PetscMalloc2(cs * stars.num_cells, &cells, cs * stars.num_cells, &others));
-  for (PetscInt c = 0; c < stars.num_cells; c++) {
-    for (PetscInt a = 0; a < cs; a++) {
-      const PetscInt v = stars.records[stars.width * c + 1 + a];
-      cells[cs * c + a] = v;
-      if (v < soup->vertex_start || v >= soup->vertex_end) others[num_others++] = v;
-    }
+  PetscCall(EqmVicinityCreateCells(soup, &vicinity));
+  PetscCall(EqmGraphOfCells(vicinity.num_owned, vicinity.cell_size, vicinity.num_cells, vicinity.cells, graph));
+  for (PetscInt q = 0; q < graph->start[graph->num_rows]; q++) {
+    graph->neighbor[q] = vicinity.input[graph->neighbor[q]];
   }
-  PetscCall(PetscSortRemoveDupsInt(&num_others, others));
-  for (PetscInt k = 0; k < cs * stars.num_cells; k++) {
-    PetscInt place = cells[k] - soup->vertex_start;
-    if (cells[k] < soup->vertex_start || cells[k] >= soup->vertex_end) {
-      PetscCall(PetscFindInt(cells[k], num_others, others, &place));
-      place += num_rows;
-    }
-    cells[k] = place;
-  }
-  PetscCall(EqmGraphOfCells(num_rows, cs, stars.num_cells, cells, graph));
-  for (PetscInt q = 0; q < graph->start[num_rows]; q++) {
-    const PetscInt v = graph->neighbor[q];
-    graph->neighbor[q] = v < num_rows ? v + soup->vertex_start : others[v - num_rows];
-  }
-  PetscCall(PetscFree2(cells, others));
-  PetscCall(EqmStarsReset(&stars));
-  PetscFunctionReturn(0);
-}
-
-/* Cut a graph into parts of equal size with few edges between them. Not collective. */
-PetscErrorCode EqmRunMetis(PetscInt num_parts, PetscInt n, PetscInt *start, PetscInt *neighbor, PetscInt *part)
-{
-  idx_t num_rows = (idx_t)n, num_constraints = 1, parts = (idx_t)num_parts, cut;
-  int result;
-
-  PetscFunctionBegin;
-  if (num_parts == 1) { /* METIS divides by zero there */
-    PetscCall(PetscArrayzero(part, n));
-    PetscFunctionReturn(0);
-  }
-  PetscCheck(sizeof(idx_t) == sizeof(PetscInt), PETSC_COMM_SELF, PETSC_ERR_SUP,
-             "METIS and PETSc were built with integers of different sizes; build both with the same");
-  result = METIS_PartGraphKway(&num_rows, &num_constraints, (idx_t *)start, (idx_t *)neighbor, NULL, NULL, NULL, &parts,
-                               NULL, NULL, NULL, &cut, (idx_t *)part);
-  PetscCheck(result == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_PartGraphKway failed with code %d", result);
+  PetscCall(EqmVicinityReset(&vicinity));
   PetscFunctionReturn(0);
 }
 
@@ -68,6 +22,7 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
 {
   const PetscInt num_rows = graph->num_rows;
   PetscInt *degree, *all_start = NULL, *all_neighbor = NULL, *part = NULL, n = soup->num_vertices;
+  PetscInt64 num_edges = 0;
   PetscMPIInt rank, size, *row_count, *row_start, *edge_count, *edge_start, mine[2], (*counts)[2];
 
   PetscFunctionBegin;
@@ -82,6 +37,10 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
   for (PetscMPIInt p = 0; p < size; p++) {
     row_count[p] = counts[p][0];
     edge_count[p] = counts[p][1];
+    num_edges += edge_count[p];
+    if (num_edges > PETSC_MPI_INT_MAX) {
+      EqmFail(soup->comm, EQM_ERR_USAGE, "the mesh's graph is too large for METIS on one rank: take -partition slab");
+    }
     row_start[p + 1] = row_start[p] + row_count[p];
     edge_start[p + 1] = edge_start[p] + edge_count[p];
   }

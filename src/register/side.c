@@ -86,9 +86,9 @@ static PetscErrorCode WeighVertices(EqmSide *side)
   const EqmMesh mesh = side->mesh;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(mesh->num_local, &side->weight));
-  for (PetscInt k = 0; k < mesh->cell_size * mesh->num_local_cells; k++)
-    side->weight[mesh->cells[k]] += mesh->weight[k / mesh->cell_size] / mesh->cell_size;
+  PetscCall(PetscMalloc1(mesh->num_local, &side->weight));
+  PetscCall(EqmMeshVertexWeights(mesh, side->weight));
+  PetscCall(EqmMeshUpdateGhosts(mesh, 1, side->weight));
   PetscFunctionReturn(0);
 }
 
