@@ -2,6 +2,7 @@
    multifrontal solution of indefinite sparse symmetric linear equations, ACM TOMS 9, 1983), with the tree and thereby
    every sum fixed in advance. */
 #include "linalg/interface_private.h"
+#include "linalg/narrow.h"
 
 enum { MOST_LEVELS = 32 };
 
@@ -91,6 +92,7 @@ static PetscErrorCode SetUpFront(EqmInterface tree, EqmFront *front, PetscInt **
   PetscFunctionBegin;
   front->num_from[0] = num_records;
   PetscCallMPI(MPI_Recv(&front->num_from[1], 1, MPIU_INT, front->right, EQM_TAG_SHAPE, tree->comm, MPI_STATUS_IGNORE));
+  PetscCall(EqmCheckFits((PetscInt64)RECORD * front->num_from[1], sizeof(PetscMPIInt), "MPI", "numbers of a front"));
   PetscCall(PetscMalloc1(RECORD * front->num_from[1], &both[1]));
   PetscCallMPI(MPI_Recv(both[1], (PetscMPIInt)(RECORD * front->num_from[1]), MPIU_INT, front->right, EQM_TAG_SHAPE,
                         tree->comm, MPI_STATUS_IGNORE));
@@ -127,6 +129,7 @@ PetscErrorCode EqmInterfaceCreate(MPI_Comm comm, PetscInt num_shared, const Pets
     left = tree->front[k].num_kept;
   }
   tree->num_left = left;
+  PetscCall(EqmCheckFits((PetscInt64)RECORD * left, sizeof(PetscMPIInt), "MPI", "numbers of a front"));
   if (tree->parent >= 0) {
     PetscCallMPI(MPI_Send(&left, 1, MPIU_INT, tree->parent, EQM_TAG_SHAPE, comm));
     PetscCallMPI(MPI_Send(record, (PetscMPIInt)(RECORD * left), MPIU_INT, tree->parent, EQM_TAG_SHAPE, comm));

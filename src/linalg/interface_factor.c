@@ -1,5 +1,17 @@
 /* The factorisation on a tree of ranks, front by front. */
 #include "linalg/interface_private.h"
+#include "linalg/narrow.h"
+
+/* Entries of the lower triangle of an n x n matrix, as many as one message may carry. */
+static PetscErrorCode CountTriangle(PetscInt n, PetscMPIInt *count)
+{
+  const PetscInt64 entries = (PetscInt64)n * (n + 1) / 2;
+
+  PetscFunctionBegin;
+  PetscCall(EqmCheckFits(entries, sizeof(PetscMPIInt), "MPI", "entries of a dense front"));
+  *count = (PetscMPIInt)entries;
+  PetscFunctionReturn(0);
+}
 
 /* Lower triangles travel packed, column after column. */
 static PetscErrorCode SendTriangle(EqmInterface tree, PetscInt n, const PetscScalar *matrix)
@@ -8,7 +20,7 @@ static PetscErrorCode SendTriangle(EqmInterface tree, PetscInt n, const PetscSca
   PetscMPIInt count;
 
   PetscFunctionBegin;
-  PetscCall(PetscMPIIntCast(n * (n + 1) / 2, &count));
+  PetscCall(CountTriangle(n, &count));
   PetscCall(PetscMalloc1(count, &packed));
   next = packed;
   for (PetscInt j = 0; j < n; next += n - j, j++) PetscCall(PetscArraycpy(next, matrix + (size_t)n * j + j, n - j));
@@ -22,7 +34,7 @@ static PetscErrorCode ReceiveTriangle(EqmInterface tree, PetscMPIInt from, Petsc
   PetscMPIInt count;
 
   PetscFunctionBegin;
-  PetscCall(PetscMPIIntCast(n * (n + 1) / 2, &count));
+  PetscCall(CountTriangle(n, &count));
   PetscCall(PetscMalloc1(count, packed));
   PetscCallMPI(MPI_Recv(*packed, count, MPIU_SCALAR, from, EQM_TAG_MATRIX, tree->comm, MPI_STATUS_IGNORE));
   PetscFunctionReturn(0);

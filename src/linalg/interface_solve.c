@@ -1,5 +1,6 @@
 /* Solves on a tree of ranks: up with L, down with its transpose. */
 #include "linalg/interface_private.h"
+#include "linalg/narrow.h"
 
 /* Columns of `count` numbers each, from and to rows of a front. */
 static void AddRows(const PetscInt *place, PetscInt count, PetscInt num_rhs, const PetscScalar *from, PetscInt rows,
@@ -98,16 +99,29 @@ static PetscErrorCode SolveDown(EqmInterface tree, EqmFront *front, PetscInt num
   PetscFunctionReturn(0);
 }
 
+/* Does every message of a solve fit? */
+static PetscErrorCode CheckMessages(EqmInterface tree, PetscInt num_rhs)
+{
+  static const char *const what = "numbers of a front's right-hand sides";
+
+  PetscFunctionBegin;
+  PetscCall(EqmCheckFits((PetscInt64)num_rhs * tree->num_left, sizeof(PetscMPIInt), "MPI", what));
+  for (PetscInt k = 0; k < tree->num_fronts; k++)
+    PetscCall(EqmCheckFits((PetscInt64)num_rhs * tree->front[k].num_from[1], sizeof(PetscMPIInt), "MPI", what));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmInterfaceSolve(EqmInterface tree, PetscInt num_rhs, PetscScalar *columns)
 {
   PetscScalar *now;
   PetscMPIInt count;
 
   PetscFunctionBegin;
+  PetscCall(CheckMessages(tree, num_rhs));
+  count = (PetscMPIInt)(tree->num_left * num_rhs);
   PetscCall(PetscMalloc1(tree->num_shared * num_rhs, &now));
   PetscCall(PetscArraycpy(now, columns, tree->num_shared * num_rhs));
   for (PetscInt k = 0; k < tree->num_fronts; k++) PetscCall(SolveUp(tree, &tree->front[k], num_rhs, &now));
-  PetscCall(PetscMPIIntCast(tree->num_left * num_rhs, &count));
   if (tree->parent >= 0) {
     PetscCallMPI(MPI_Send(now, count, MPIU_SCALAR, tree->parent, EQM_TAG_UP, tree->comm));
     PetscCallMPI(MPI_Recv(now, count, MPIU_SCALAR, tree->parent, EQM_TAG_DOWN, tree->comm, MPI_STATUS_IGNORE));

@@ -119,6 +119,11 @@ struct _p_EqmLinear {
 PETSC_INTERN PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject);
 /* Hand what was asked for on to a run inside this one, which has options of its own. */
 PETSC_INTERN PetscErrorCode EqmLinearPassOptions(PetscOptions options);
+/* Until EqmOptionsPopDefaults, options that are not given have the values of `defaults` (pairs of name and value). The
+   caller's database is not written to; what has been used meanwhile counts as used there, too. Collective. */
+PETSC_INTERN PetscErrorCode EqmOptionsPushDefaults(const char *const defaults[][2], PetscInt count,
+                                                   PetscOptions *options);
+PETSC_INTERN PetscErrorCode EqmOptionsPopDefaults(PetscOptions *options);
 PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
                                             EqmMatrixUse use, EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length);

@@ -142,20 +142,25 @@ static PetscErrorCode SetFields(EqmLinear linear, PetscInt count, const PetscRea
 
 /* Smoothers are symmetric Gauss-Seidel sweeps, which are safe for every definite matrix; Chebyshev's are not where the
    estimate of the spectrum fails. A second sweep costs more than it saves. The shift, far below every entry, is for
-   coarse rows of aggregates that are too small for all the fields. The options database may say otherwise. */
-static PetscErrorCode SetSmootherOptions(void)
+   coarse rows of aggregates that are too small for all the fields. From three ranks on (the last line), coarse matrices
+   are sums in an order that does not depend on whose message comes first, as it does in PETSc's own choice of product,
+   which is faster. The options database may say otherwise. */
+static const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "richardson"},
+                                          {"-multigrid_mg_levels_ksp_max_it", "1"},
+                                          {"-multigrid_mg_levels_pc_type", "sor"},
+                                          {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"},
+                                          {"-matptap_via", "backend"}};
+
+/* Set up all levels. */
+static PetscErrorCode SetUp(KSP ksp, PetscMPIInt size)
 {
-  static const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "richardson"},
-                                            {"-multigrid_mg_levels_ksp_max_it", "1"},
-                                            {"-multigrid_mg_levels_pc_type", "sor"},
-                                            {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"}};
+  const PetscInt count = (PetscInt)(sizeof(defaults) / sizeof(defaults[0]));
+  PetscOptions options;
 
   PetscFunctionBegin;
-  for (size_t k = 0; k < sizeof(defaults) / sizeof(defaults[0]); k++) {
-    PetscBool given;
-    PetscCall(PetscOptionsHasName(NULL, NULL, defaults[k][0], &given));
-    if (!given) PetscCall(PetscOptionsSetValue(NULL, defaults[k][0], defaults[k][1]));
-  }
+  PetscCall(EqmOptionsPushDefaults(defaults, size > 2 ? count : count - 1, &options));
+  PetscCall(KSPSetUp(ksp));
+  PetscCall(EqmOptionsPopDefaults(&options));
   PetscFunctionReturn(0);
 }
 
@@ -173,25 +178,8 @@ static PetscErrorCode MakeIteration(EqmLinear linear)
   PetscCall(KSPSetTolerances(g->ksp, linear->tolerance, PETSC_DEFAULT, PETSC_DEFAULT, 2000));
   PetscCall(KSPGetPC(g->ksp, &pc));
   PetscCall(PCSetType(pc, PCGAMG));
-  PetscCall(SetSmootherOptions());
   PetscCall(KSPSetOptionsPrefix(g->ksp, "multigrid_"));
   PetscCall(KSPSetFromOptions(g->ksp));
-  PetscFunctionReturn(0);
-}
-
-/* From three ranks on, coarse matrices as sums in an order that does not depend on whose message comes first, as it
-   does in PETSc's own choice of product, which is faster. */
-static PetscErrorCode SetUpInOrder(KSP ksp, PetscMPIInt size)
-{
-  static const char *const name = "-matptap_via";
-  PetscBool mine;
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &mine));
-  mine = (PetscBool)(!mine && size > 2);
-  if (mine) PetscCall(PetscOptionsSetValue(NULL, name, "backend"));
-  PetscCall(KSPSetUp(ksp));
-  if (mine) PetscCall(PetscOptionsClearValue(NULL, name));
   PetscFunctionReturn(0);
 }
 
@@ -219,7 +207,7 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscCall(KSPSetOperators(g->ksp, matrix, matrix));
   PetscCall(KSPGetPC(g->ksp, &pc));
   PetscCall(PCGAMGSetReuseInterpolation(pc, linear->keeps_coarse_spaces));
-  PetscCall(SetUpInOrder(g->ksp, linear->mesh->size));
+  PetscCall(SetUp(g->ksp, linear->mesh->size));
   PetscCall(PCGetFailedReason(pc, &failed));
   *success = (PetscBool)(failed == PC_NOERROR);
   PetscFunctionReturn(0);

@@ -1,6 +1,7 @@
 /* MUMPS on any number of ranks, called directly: PETSc's interface cannot hand it an ordering, and Debian's MUMPS has
    none of METIS's, whose nested dissection halves the fill. */
 #include "linalg/linalg.h"
+#include "linalg/narrow.h"
 #include <dmumps_c.h>
 
 /* The manual counts from 1. */
@@ -69,6 +70,8 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
   PetscFunctionBegin;
   PetscCall(EqmAssemblyGetMat(linear->assembly, &matrix));
   PetscCall(MatGetInfo(matrix, MAT_LOCAL, &info));
+  /* every number handed to MUMPS in its integers is one of an unknown or less, counted from 1 */
+  PetscCall(EqmCheckFits((PetscInt64)linear->num_unknowns + 1, sizeof(MUMPS_INT), "MUMPS", "unknowns"));
   m->id.n = (MUMPS_INT)linear->num_unknowns;
   m->id.nnz_loc = (MUMPS_INT8)info.nz_used;
   PetscCall(PetscMalloc3((size_t)m->id.nnz_loc, &m->row, (size_t)m->id.nnz_loc, &m->column, (size_t)m->id.nnz_loc,
@@ -146,6 +149,7 @@ static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal 
   PetscFunctionBegin;
   PetscCall(Reserve(linear, num_rhs));
   PetscCall(PetscArraycpy(m->rhs, b, num_rhs * linear->num_owned));
+  PetscCall(EqmCheckFits(num_rhs, sizeof(MUMPS_INT), "MUMPS", "right-hand sides"));
   m->id.nrhs = (MUMPS_INT)num_rhs;
   m->id.rhs_loc = m->rhs;
   m->id.lsol_loc = (MUMPS_INT)PetscMax(1, m->num_solution);

@@ -33,9 +33,8 @@ static PetscErrorCode SteersSolvers(const char *name, PetscBool *steers)
   PetscFunctionReturn(0);
 }
 
-/* For a run inside another one that has an options database of its own: what the present database says of solvers goes
-   to `options`. Not collective. */
-PetscErrorCode EqmLinearPassOptions(PetscOptions options)
+/* Copy the entries of the present database, or only those that steer solvers, to another one. */
+static PetscErrorCode CopyOptions(PetscBool only_solvers, PetscOptions options)
 {
   char *all, *word;
   PetscToken token;
@@ -46,14 +45,59 @@ PetscErrorCode EqmLinearPassOptions(PetscOptions options)
   PetscCall(PetscTokenFind(token, &word));
   while (word) {
     char *const name = word;
-    PetscBool is_name, taken;
+    PetscBool is_name, taken = PETSC_TRUE;
     PetscCall(PetscTokenFind(token, &word));
-    PetscCall(SteersSolvers(name, &taken));
-    if (!taken) continue; /* nor is a value of another option one of these names */
+    PetscCall(PetscOptionsValidKey(name, &is_name)); /* else a value, or a part of one with spaces in it */
+    if (is_name && only_solvers) PetscCall(SteersSolvers(name, &taken));
+    if (!is_name || !taken) continue;
     PetscCall(PetscOptionsValidKey(word, &is_name));
     PetscCall(PetscOptionsSetValue(options, name, word && !is_name ? word : NULL));
   }
   PetscCall(PetscTokenDestroy(&token));
   PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLinearPassOptions(PetscOptions options)
+{
+  PetscFunctionBegin;
+  PetscCall(CopyOptions(PETSC_TRUE, options));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmOptionsPushDefaults(const char *const defaults[][2], PetscInt count, PetscOptions *options)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsCreate(options));
+  PetscCall(CopyOptions(PETSC_FALSE, *options));
+  for (PetscInt k = 0; k < count; k++) {
+    PetscBool given;
+    PetscCall(PetscOptionsHasName(NULL, NULL, defaults[k][0], &given));
+    if (!given) PetscCall(PetscOptionsSetValue(*options, defaults[k][0], defaults[k][1]));
+  }
+  PetscCall(PetscOptionsPush(*options));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmOptionsPopDefaults(PetscOptions *options)
+{
+  char *all, *word;
+  PetscToken token;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsPop());
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  PetscCall(PetscTokenCreate(all, ' ', &token));
+  PetscCall(PetscTokenFind(token, &word));
+  while (word) {
+    PetscBool used = PETSC_FALSE;
+    PetscCall(PetscOptionsValidKey(word, &used));
+    if (used) PetscCall(PetscOptionsUsed(*options, word + 1, &used));
+    if (used) PetscCall(PetscOptionsHasName(NULL, NULL, word, &used)); /* that is how PETSc is told */
+    PetscCall(PetscTokenFind(token, &word));
+  }
+  PetscCall(PetscTokenDestroy(&token));
+  PetscCall(PetscFree(all));
+  PetscCall(PetscOptionsDestroy(options));
   PetscFunctionReturn(0);
 }

@@ -1,8 +1,8 @@
 /* Nested dissection of the vertex graph. Ordering vertices, not unknowns, is four times cheaper, serves the scalar and
    the coupled matrices alike, and keeps the unknowns of a vertex together. */
 #include "linalg/linalg.h"
+#include "linalg/narrow.h"
 #include "mesh/build.h"
-#include <metis.h>
 
 struct _p_EqmOrdering {
   EqmMesh mesh;
@@ -11,12 +11,15 @@ struct _p_EqmOrdering {
   EqmSeparation *separation; /* made at the first need */
 };
 
-/* Counts of every rank and their offsets, for gathers to rank 0. */
+/* Counts of every rank and their offsets, for gathers to rank 0. Collective. */
 static PetscErrorCode GatherLayout(EqmMesh mesh, PetscInt mine, PetscMPIInt **count, PetscMPIInt **start)
 {
   PetscMPIInt num_mine;
+  PetscInt64 total = mine;
 
   PetscFunctionBegin;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_INT64, MPI_SUM, mesh->comm));
+  PetscCall(EqmCheckFits(total, sizeof(PetscMPIInt), "MPI", "numbers gathered on one rank for its ordering"));
   PetscCall(PetscMalloc2(mesh->size, count, mesh->size + 1, start));
   PetscCall(PetscMPIIntCast(mine, &num_mine));
   PetscCallMPI(MPI_Allgather(&num_mine, 1, MPI_INT, *count, 1, MPI_INT, mesh->comm));
@@ -36,31 +39,6 @@ static PetscErrorCode GatherInts(EqmMesh mesh, PetscInt n, const PetscInt *mine,
   if (mesh->rank == 0) PetscCall(PetscMalloc1(*num_all + 1, all));
   PetscCallMPI(MPI_Gatherv(mine, count[mesh->rank], MPIU_INT, *all, count, start, MPIU_INT, 0, mesh->comm));
   PetscCall(PetscFree2(count, start));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmDissect(PetscInt n, PetscInt *degree_then_start, PetscInt *neighbor, PetscInt *order)
-{
-  PetscInt *inverse, sum = 0;
-  idx_t num_rows = (idx_t)n;
-  int result;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt degree = degree_then_start[i];
-    degree_then_start[i] = sum;
-    sum += degree;
-  }
-  degree_then_start[n] = sum;
-  if (sum == 0) { /* nothing to dissect */
-    for (PetscInt i = 0; i < n; i++) order[i] = i;
-    PetscFunctionReturn(0);
-  }
-  PetscCall(PetscMalloc1(n, &inverse));
-  result = METIS_NodeND(&num_rows, (idx_t *)degree_then_start, (idx_t *)neighbor, NULL, NULL, (idx_t *)order,
-                        (idx_t *)inverse);
-  PetscCheck(result == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_NodeND failed with code %d", result);
-  PetscCall(PetscFree(inverse));
   PetscFunctionReturn(0);
 }
 
