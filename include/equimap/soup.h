@@ -5,6 +5,9 @@
 
 #include <equimap/base.h>
 
+/* Longest note of a reader, terminating zero included. */
+#define EQM_SOUP_NOTE 256
+
 /* A mesh on one rank, as a parser makes it and as a writer takes it. Indices count from 0 in input numbering. */
 typedef struct {
   PetscInt num_vertices;
@@ -12,6 +15,8 @@ typedef struct {
   PetscInt cell_size;  /* vertices per cell: 3 triangles, 4 tetrahedra; 0 while unknown */
   PetscReal *vertices; /* 3 * num_vertices; PetscMalloc'ed */
   PetscInt *cells;     /* cell_size * num_cells; PetscMalloc'ed */
+  PetscReal *texture;  /* 2 * cell_size * num_cells, the texture coordinates of each corner, or NULL; PetscMalloc'ed */
+  char note[EQM_SOUP_NOTE]; /* what the reader changed, in plain words; "": nothing */
 } EqmSerialMesh;
 
 /* A slab of the file's mesh on each rank. Public fields, read-only after creation. */
@@ -27,6 +32,7 @@ struct _p_EqmSoup {
   PetscReal *density;                /* per cell of the slab, positive, or NULL: all one */
   PetscReal *edge_length; /* per cell of the slab and corner, of the edge opposite; NULL: edges are straight in space */
   char file[PETSC_MAX_PATH_LEN]; /* where it came from */
+  char note[EQM_SOUP_NOTE];      /* what its reader changed, in plain words; "": nothing */
   PetscInt64 checksum;           /* CRC-32 of vertices and cells in input order, rank-independent */
 };
 

@@ -258,6 +258,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
   }
   PetscCall(EqmSoupDiagnose(soup, &report.diagnosis));
   PetscCall(PrintCounts(&report));
+  if (soup->note[0]) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  note              %s\n", soup->note));
   if (report.repaired) PetscCall(EqmPrintRepair(PETSC_COMM_WORLD, NULL, &report.repair));
   PetscCall(PrintVerdicts(&report));
   if (options.summary[0]) PetscCall(WriteSummary(&report, options.summary));

@@ -85,6 +85,7 @@ PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status)
   if (options.refine < 0)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-refine %" PetscInt_FMT ": give 0 or more", options.refine);
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
+  if (soup->note[0]) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "note: %s: %s\n", soup->file, soup->note));
   if (options.repair) {
     EqmRepair repair;
     PetscInt *parent;

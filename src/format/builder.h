@@ -1,4 +1,4 @@
-/* The mesh that a parser is making: grows as the file goes on, and knows at the end whether it can be mapped. */
+/* The mesh that a parser makes: it grows as the file is read, and is checked and completed at the end. */
 #ifndef EQM_FORMAT_BUILDER_H
 #define EQM_FORMAT_BUILDER_H
 
@@ -11,19 +11,41 @@ typedef struct {
   PetscInt *corners;      /* cell size * capacity */
 } EqmCellList;
 
+/* A face of more than three corners, which is cut into triangles when all vertices are known. */
+typedef struct {
+  size_t first_triangle; /* of num_corners - 2 triangles that follow each other */
+  size_t first_corner;   /* in the list of corners of all polygons */
+  PetscInt num_corners;
+} EqmPolygon;
+
 typedef struct {
   EqmInput *in; /* for messages */
   size_t num_vertices, vertex_capacity;
   PetscReal *vertices; /* 3 * vertex_capacity */
   EqmCellList triangles, tetrahedra;
+  size_t num_polygons, polygon_capacity;
+  EqmPolygon *polygons;
+  EqmCellList polygon_corners;            /* vertex, texture point (-1: none); cell size 2 */
+  size_t num_textured, textured_capacity; /* triangles; the first ones of the list */
+  PetscInt *textured;                     /* 3 per triangle: texture point of each corner, -1: none */
+  size_t num_texture_points, texture_capacity;
+  PetscReal *texture_points; /* 2 * texture_capacity */
+  size_t num_face_corners, face_capacity;
+  PetscInt64 *face;                           /* vertex and texture point of each corner of the face being read */
   char other_surface[160], other_volume[160]; /* the first cell of another shape: what it is and where; "" if none */
 } EqmBuilder;
 
 PETSC_INTERN void EqmBuilderOpen(EqmBuilder *builder, EqmInput *in);
 PETSC_INTERN PetscErrorCode EqmBuilderAddVertices(EqmBuilder *builder, size_t count, PetscReal **vertices);
+PETSC_INTERN PetscErrorCode EqmBuilderAddTexturePoints(EqmBuilder *builder, size_t count, PetscReal **points);
 PETSC_INTERN PetscErrorCode EqmBuilderAddCells(EqmBuilder *builder, PetscInt cell_size, size_t count, PetscInt **cells);
+PETSC_INTERN void EqmBuilderStartFace(EqmBuilder *builder);
+PETSC_INTERN PetscErrorCode EqmBuilderAddCorner(EqmBuilder *builder, PetscInt64 vertex, PetscInt64 texture);
+PETSC_INTERN PetscErrorCode EqmBuilderEndFace(EqmBuilder *builder, const char *position, PetscInt64 num_vertices);
 PETSC_INTERN PetscErrorCode EqmBuilderAddFace(EqmBuilder *builder, const char *position, PetscInt64 num_vertices,
-                                              PetscInt64 num_corners, const PetscInt64 corners[3]);
+                                              PetscInt64 num_corners, const PetscInt64 *corners);
+PETSC_INTERN PetscErrorCode EqmBuilderAddStrip(EqmBuilder *builder, const char *position, PetscInt64 num_vertices,
+                                               PetscInt64 num_corners, const PetscInt64 *corners);
 PETSC_INTERN void EqmBuilderNoteOther(EqmBuilder *builder, PetscInt dimension, const char *position, const char *what);
 PETSC_INTERN PetscErrorCode EqmBuilderFinish(EqmBuilder *builder, PetscErrorCode code, EqmSerialMesh *mesh);
 

@@ -1,5 +1,5 @@
-/* Gmsh's MSH, versions 2.2 and 4.1, ASCII and binary: header, sections, and what both versions share. All nodes are
-   kept, in file order; tetrahedra are the cells if there are any, otherwise triangles. */
+/* Gmsh's MSH, versions 2.2, 4.0 and 4.1, ASCII and binary: header, sections, and what both versions share. All nodes
+   are kept, in file order; tetrahedra are the cells if there are any, otherwise triangles. */
 #define _GNU_SOURCE
 #include "gmsh.h"
 #include "writers.h"
@@ -28,7 +28,8 @@ static PetscErrorCode ParseFormat(EqmGmsh *gmsh, PetscInt *version)
   if (!EqmReadReal(in, &number) || !EqmReadInteger(in, &binary) || !EqmReadInteger(in, &size)) {
     return EqmReject(in, EQM_ERR_IO, "a version, a file type and a data size are missing");
   }
-  *version = number == 4.1 ? 4 : number >= 2 && number < 3 ? 2 : 0;
+  *version = number == 4.1 || number == 4.0 ? 4 : number >= 2 && number < 3 ? 2 : 0;
+  gmsh->version_4_0 = number == 4.0 ? PETSC_TRUE : PETSC_FALSE;
   if (!*version)
     return EqmReject(in, EQM_ERR_IO, "MSH version %g is not supported; save as 4.1 or 2.2", (double)number);
   if (size != 8) return EqmReject(in, EQM_ERR_IO, "a data size of %lld is not supported; 8 is", (long long)size);
@@ -61,12 +62,13 @@ static PetscErrorCode SkipToEnd(EqmInput *in, const char *name, size_t length)
   return 0;
 }
 
-static PetscErrorCode ParseNodes(EqmGmsh *gmsh, PetscInt version)
+/* Programs that keep the parameters of nodes on curves and surfaces write $ParametricNodes for $Nodes. */
+static PetscErrorCode ParseNodes(EqmGmsh *gmsh, PetscInt version, PetscBool parametric)
 {
   if (gmsh->has_nodes) return EqmReject(gmsh->in, EQM_ERR_IO, "a second section $Nodes");
   gmsh->has_nodes = PETSC_TRUE;
   EqmSkipLine(gmsh->in);
-  EqmTry(version == 2 ? EqmGmshParseNodes2(gmsh) : EqmGmshParseNodes4(gmsh));
+  EqmTry(version == 2 ? EqmGmshParseNodes2(gmsh, parametric) : EqmGmshParseNodes4(gmsh));
   return EqmGmshCloseNodes(gmsh);
 }
 
@@ -91,7 +93,9 @@ static PetscErrorCode ParseSections(EqmGmsh *gmsh)
     if (EqmWordIs(word, length, "$MeshFormat")) {
       EqmTry(ParseFormat(gmsh, &version));
     } else if (version && EqmWordIs(word, length, "$Nodes")) {
-      EqmTry(ParseNodes(gmsh, version));
+      EqmTry(ParseNodes(gmsh, version, PETSC_FALSE));
+    } else if (version == 2 && EqmWordIs(word, length, "$ParametricNodes")) {
+      EqmTry(ParseNodes(gmsh, version, PETSC_TRUE));
     } else if (version && EqmWordIs(word, length, "$Elements")) {
       EqmTry(ParseElements(gmsh, version));
     } else if (!version && !EqmWordIs(word, length, "$Comments")) {

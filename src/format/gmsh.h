@@ -1,4 +1,4 @@
-/* What the two versions of Gmsh's MSH format share. */
+/* What the versions of Gmsh's MSH format share. */
 #ifndef EQM_FORMAT_GMSH_H
 #define EQM_FORMAT_GMSH_H
 
@@ -10,18 +10,19 @@ typedef struct {
   EqmInput *in;
   EqmBuilder builder;
   EqmTagMap tags;
-  PetscBool ascii, big_endian;
+  PetscBool ascii, big_endian, version_4_0;
   PetscBool has_nodes;
 } EqmGmsh;
 
 PETSC_INTERN PetscErrorCode EqmGmshReadInteger(EqmGmsh *gmsh, EqmScalarType type, const char *what, PetscInt64 *value);
 PETSC_INTERN PetscErrorCode EqmGmshReadCount(EqmGmsh *gmsh, EqmScalarType type, const char *what, size_t bytes_each,
                                              PetscInt64 *count);
+PETSC_INTERN PetscErrorCode EqmGmshReadTag(EqmGmsh *gmsh, EqmScalarType type);
 PETSC_INTERN PetscErrorCode EqmGmshReadPoint(EqmGmsh *gmsh, PetscReal point[3]);
 PETSC_INTERN PetscErrorCode EqmGmshCloseNodes(EqmGmsh *gmsh);
 PETSC_INTERN PetscErrorCode EqmGmshNodesOfType(EqmGmsh *gmsh, PetscInt64 type, PetscInt *num_nodes);
 PETSC_INTERN PetscErrorCode EqmGmshReadElement(EqmGmsh *gmsh, PetscInt64 type, PetscInt num_nodes, EqmScalarType index);
-PETSC_INTERN PetscErrorCode EqmGmshParseNodes2(EqmGmsh *gmsh);
+PETSC_INTERN PetscErrorCode EqmGmshParseNodes2(EqmGmsh *gmsh, PetscBool parametric);
 PETSC_INTERN PetscErrorCode EqmGmshParseElements2(EqmGmsh *gmsh);
 PETSC_INTERN PetscErrorCode EqmGmshParseNodes4(EqmGmsh *gmsh);
 PETSC_INTERN PetscErrorCode EqmGmshParseElements4(EqmGmsh *gmsh);

@@ -1,8 +1,25 @@
 /* Nodes and elements of MSH 2.2. */
 #include "gmsh.h"
 
-/* EqmGmshParseNodes2 - the section $Nodes of version 2.2. Not collective. Errors: EQM_ERR_IO (quiet). */
-PetscErrorCode EqmGmshParseNodes2(EqmGmsh *gmsh)
+/* What follows the coordinates in $ParametricNodes: dimension and tag of the entity that the node lies on, one
+   parameter on a curve, two on a surface. */
+static PetscErrorCode SkipParameters(EqmGmsh *gmsh)
+{
+  PetscInt64 dimension, unused;
+  const char *skipped;
+
+  if (gmsh->ascii) {
+    EqmSkipLine(gmsh->in);
+    return 0;
+  }
+  EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the dimension of an entity", &dimension));
+  EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the tag of an entity", &unused));
+  return EqmTakeBytes(gmsh->in, dimension == 1 ? 8 : dimension == 2 ? 16 : 0, "parameters of a node", &skipped);
+}
+
+/* EqmGmshParseNodes2 - the section $Nodes, or $ParametricNodes, of version 2.2. Not collective. Errors: EQM_ERR_IO
+   (quiet). */
+PetscErrorCode EqmGmshParseNodes2(EqmGmsh *gmsh, PetscBool parametric)
 {
   const size_t bytes_each = gmsh->ascii ? 8 : 28;
   PetscInt64 count;
@@ -14,12 +31,9 @@ PetscErrorCode EqmGmshParseNodes2(EqmGmsh *gmsh)
   EqmTry(EqmBuilderAddVertices(&gmsh->builder, (size_t)count, &x));
   EqmTry(EqmTagMapReserve(&gmsh->tags, (size_t)count));
   for (PetscInt64 i = 0; i < count; ++i) {
-    PetscInt64 tag;
-
-    EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the tag of a node", &tag));
-    if (tag < 0) return EqmReject(gmsh->in, EQM_ERR_IO, "a node has the negative tag %lld", (long long)tag);
-    EqmTagMapAdd(&gmsh->tags, tag);
+    EqmTry(EqmGmshReadTag(gmsh, EQM_SCALAR_INT32));
     EqmTry(EqmGmshReadPoint(gmsh, x + 3 * i));
+    if (parametric) EqmTry(SkipParameters(gmsh));
   }
   return 0;
 }

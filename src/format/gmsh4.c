@@ -1,4 +1,5 @@
-/* Nodes and elements of MSH 4.1: blocks, one per entity of the geometry. */
+/* Nodes and elements of MSH 4.1 and 4.0: blocks, one per entity of the geometry. In 4.0 the tags of nodes and elements
+   are of 32 bits, each node has its tag before its coordinates, and the header does not say the range of the tags. */
 #include "gmsh.h"
 
 /* Number of blocks, of nodes or elements, smallest and largest tag. */
@@ -9,17 +10,19 @@ static PetscErrorCode ParseSectionHeader(EqmGmsh *gmsh, const char *what, size_t
 
   EqmTry(EqmGmshReadCount(gmsh, EQM_SCALAR_UINT64, "the number of blocks", gmsh->ascii ? 8 : 20, num_blocks));
   EqmTry(EqmGmshReadCount(gmsh, EQM_SCALAR_UINT64, what, bytes_each, count));
+  if (gmsh->version_4_0) return 0;
   EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_UINT64, "the smallest tag", &unused));
   return EqmGmshReadInteger(gmsh, EQM_SCALAR_UINT64, "the largest tag", &unused);
 }
 
-/* Dimension and tag of the entity, a third number, and how many follow. */
+/* Dimension and tag of the entity (in 4.0: tag and dimension), a third number, and how many follow. */
 static PetscErrorCode ParseBlockHeader(EqmGmsh *gmsh, PetscInt64 *dimension, PetscInt64 *third, PetscInt64 *count)
 {
   PetscInt64 unused;
 
   EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the dimension of an entity", dimension));
   EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the tag of an entity", &unused));
+  if (gmsh->version_4_0) *dimension = unused; /* the tag comes first */
   EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the third number of a block", third));
   return EqmGmshReadCount(gmsh, EQM_SCALAR_UINT64, "the length of a block", 2, count);
 }
@@ -38,19 +41,16 @@ static PetscErrorCode SkipParameters(EqmGmsh *gmsh, PetscInt64 dimension)
 
 static PetscErrorCode ParseNodeBlock(EqmGmsh *gmsh, PetscInt64 *missing)
 {
-  PetscInt64 dimension, parametric, count, tag;
+  PetscInt64 dimension, parametric, count;
   PetscReal *x;
 
   EqmTry(ParseBlockHeader(gmsh, &dimension, &parametric, &count));
   if (count > *missing) return EqmReject(gmsh->in, EQM_ERR_IO, "the blocks have more nodes than the section");
   *missing -= count;
-  for (PetscInt64 i = 0; i < count; ++i) {
-    EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_UINT64, "the tag of a node", &tag));
-    if (tag < 0) return EqmReject(gmsh->in, EQM_ERR_IO, "a node has a negative tag");
-    EqmTagMapAdd(&gmsh->tags, tag);
-  }
+  for (PetscInt64 i = 0; i < count && !gmsh->version_4_0; ++i) EqmTry(EqmGmshReadTag(gmsh, EQM_SCALAR_UINT64));
   EqmTry(EqmBuilderAddVertices(&gmsh->builder, (size_t)count, &x));
   for (PetscInt64 i = 0; i < count; ++i) {
+    if (gmsh->version_4_0) EqmTry(EqmGmshReadTag(gmsh, EQM_SCALAR_INT32));
     if (gmsh->ascii) EqmSkipSpace(gmsh->in, 0);
     EqmTry(EqmGmshReadPoint(gmsh, x + 3 * i));
     if (parametric) EqmTry(SkipParameters(gmsh, dimension));
@@ -58,12 +58,12 @@ static PetscErrorCode ParseNodeBlock(EqmGmsh *gmsh, PetscInt64 *missing)
   return 0;
 }
 
-/* EqmGmshParseNodes4 - the section $Nodes of version 4.1. Not collective. Errors: EQM_ERR_IO (quiet). */
+/* EqmGmshParseNodes4 - the section $Nodes of versions 4.1 and 4.0. Not collective. Errors: EQM_ERR_IO (quiet). */
 PetscErrorCode EqmGmshParseNodes4(EqmGmsh *gmsh)
 {
   PetscInt64 num_blocks, count;
 
-  EqmTry(ParseSectionHeader(gmsh, "the number of nodes", gmsh->ascii ? 8 : 32, &num_blocks, &count));
+  EqmTry(ParseSectionHeader(gmsh, "the number of nodes", gmsh->ascii ? 8 : 28, &num_blocks, &count));
   EqmTry(EqmTagMapReserve(&gmsh->tags, (size_t)count));
   for (PetscInt64 b = 0; b < num_blocks; ++b) EqmTry(ParseNodeBlock(gmsh, &count));
   if (count)
@@ -73,24 +73,25 @@ PetscErrorCode EqmGmshParseNodes4(EqmGmsh *gmsh)
 
 static PetscErrorCode ParseElementBlock(EqmGmsh *gmsh)
 {
+  const EqmScalarType index = gmsh->version_4_0 ? EQM_SCALAR_INT32 : EQM_SCALAR_UINT64;
   PetscInt64 dimension, type, count, tag;
   PetscInt num_nodes;
 
   EqmTry(ParseBlockHeader(gmsh, &dimension, &type, &count));
   EqmTry(EqmGmshNodesOfType(gmsh, type, &num_nodes));
   for (PetscInt64 i = 0; i < count; ++i) {
-    EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_UINT64, "the tag of an element", &tag));
-    EqmTry(EqmGmshReadElement(gmsh, type, num_nodes, EQM_SCALAR_UINT64));
+    EqmTry(EqmGmshReadInteger(gmsh, index, "the tag of an element", &tag));
+    EqmTry(EqmGmshReadElement(gmsh, type, num_nodes, index));
   }
   return 0;
 }
 
-/* EqmGmshParseElements4 - the section $Elements of version 4.1. Not collective. Errors: EQM_ERR_IO (quiet). */
+/* EqmGmshParseElements4 - the section $Elements of versions 4.1 and 4.0. Not collective. Errors: EQM_ERR_IO (quiet). */
 PetscErrorCode EqmGmshParseElements4(EqmGmsh *gmsh)
 {
   PetscInt64 num_blocks, count;
 
-  EqmTry(ParseSectionHeader(gmsh, "the number of elements", gmsh->ascii ? 4 : 16, &num_blocks, &count));
+  EqmTry(ParseSectionHeader(gmsh, "the number of elements", gmsh->ascii ? 4 : 8, &num_blocks, &count));
   for (PetscInt64 b = 0; b < num_blocks; ++b) EqmTry(ParseElementBlock(gmsh));
   return 0;
 }

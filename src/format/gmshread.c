@@ -3,6 +3,8 @@
 
 #include <stdio.h>
 
+enum { GMSH_TRIANGLE = 2, GMSH_TETRAHEDRON = 4 /* and between them the quadrilateral */ };
+
 /* EqmGmshReadInteger - the next whole number, text or `type`. Not collective. Errors: EQM_ERR_IO (quiet). */
 PetscErrorCode EqmGmshReadInteger(EqmGmsh *gmsh, EqmScalarType type, const char *what, PetscInt64 *value)
 {
@@ -31,6 +33,19 @@ PetscErrorCode EqmGmshReadCount(EqmGmsh *gmsh, EqmScalarType type, const char *w
   return EqmRejectAt(gmsh->in, position, EQM_ERR_IO,
                      "%lld is announced as %s, but the file is too short for that: it is truncated or damaged",
                      (long long)*count, what);
+}
+
+/* EqmGmshReadTag - the tag of the next node, for which room has been reserved. Not collective. Errors: EQM_ERR_IO
+ * (quiet).
+ */
+PetscErrorCode EqmGmshReadTag(EqmGmsh *gmsh, EqmScalarType type)
+{
+  PetscInt64 tag;
+
+  EqmTry(EqmGmshReadInteger(gmsh, type, "the tag of a node", &tag));
+  if (tag < 0) return EqmReject(gmsh->in, EQM_ERR_IO, "a node has the negative tag %lld", (long long)tag);
+  EqmTagMapAdd(&gmsh->tags, tag);
+  return 0;
 }
 
 /* EqmGmshReadPoint - three coordinates. Not collective. Errors: EQM_ERR_IO (quiet). */
@@ -74,10 +89,10 @@ PetscErrorCode EqmGmshNodesOfType(EqmGmsh *gmsh, PetscInt64 type, PetscInt *num_
   return 0;
 }
 
-/* Dimension of the types that are neither triangle nor tetrahedron of first order. */
+/* Dimension of the types that are not kept. */
 static PetscInt DimensionOf(PetscInt64 type)
 {
-  static const int surfaces[] = {3, 9, 10, 16, 20, 21, 22, 23, 24, 25};
+  static const int surfaces[] = {9, 10, 16, 20, 21, 22, 23, 24, 25};
   static const int curves[] = {1, 8, 15, 26, 27, 28};
 
   for (size_t i = 0; i < sizeof(surfaces) / sizeof(surfaces[0]); ++i) {
@@ -89,28 +104,33 @@ static PetscInt DimensionOf(PetscInt64 type)
   return 3;
 }
 
-/* EqmGmshReadElement - the nodes of an element: kept for triangles and tetrahedra, passed over for others. Not
-   collective. Errors: EQM_ERR_IO (quiet) for a node that is not there. */
+/* EqmGmshReadElement - the nodes of an element: kept for triangles, quadrilaterals and tetrahedra, skipped for others.
+   Not collective. Errors: EQM_ERR_IO (quiet) for a node that is not there. */
 PetscErrorCode EqmGmshReadElement(EqmGmsh *gmsh, PetscInt64 type, PetscInt num_nodes, EqmScalarType index)
 {
   const char *position = gmsh->in->cursor;
-  const PetscBool wanted = type == 2 || type == 4 ? PETSC_TRUE : PETSC_FALSE;
-  PetscInt *cell = NULL;
+  const PetscBool wanted = type >= GMSH_TRIANGLE && type <= GMSH_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+  PetscInt64 corner[4], tag;
+  PetscInt *cell;
   char what[64];
 
-  if (wanted) EqmTry(EqmBuilderAddCells(&gmsh->builder, num_nodes, 1, &cell));
   for (PetscInt k = 0; k < num_nodes; ++k) {
-    PetscInt64 tag;
-
     EqmTry(EqmGmshReadInteger(gmsh, index, "a node of an element", &tag));
     if (!wanted) continue;
-    cell[k] = EqmTagMapFind(&gmsh->tags, tag);
-    if (cell[k] < 0) {
+    corner[k] = EqmTagMapFind(&gmsh->tags, tag);
+    if (corner[k] < 0) {
       return EqmRejectAt(gmsh->in, position, EQM_ERR_IO,
                          "an element names node %lld, which is out of range: no node has this tag", (long long)tag);
     }
   }
-  if (wanted || DimensionOf(type) < 2) return 0;
+  if (wanted && type != GMSH_TETRAHEDRON)
+    return EqmBuilderAddFace(&gmsh->builder, position, (PetscInt64)gmsh->builder.num_vertices, num_nodes, corner);
+  if (wanted) {
+    EqmTry(EqmBuilderAddCells(&gmsh->builder, 4, 1, &cell));
+    for (int k = 0; k < 4; ++k) cell[k] = (PetscInt)corner[k];
+    return 0;
+  }
+  if (DimensionOf(type) < 2) return 0;
   snprintf(what, sizeof(what), "an element of type %d with %d nodes", (int)type, (int)num_nodes);
   EqmBuilderNoteOther(&gmsh->builder, DimensionOf(type), position, what);
   return 0;

@@ -6,7 +6,7 @@
 #include <ctype.h>
 
 const EqmMeditKind EqmMeditKinds[EQM_MEDIT_NUM_KINDS] = {
-    {"Triangles", 6, 2, 3, PETSC_TRUE},   {"Quadrilaterals", 7, 2, 4, PETSC_FALSE},
+    {"Triangles", 6, 2, 3, PETSC_TRUE},   {"Quadrilaterals", 7, 2, 4, PETSC_TRUE},
     {"Tetrahedra", 8, 3, 4, PETSC_TRUE},  {"Prisms", 9, 3, 6, PETSC_FALSE},
     {"Hexahedra", 10, 3, 8, PETSC_FALSE}, {"TrianglesP2", 24, 2, 6, PETSC_FALSE},
     {"Pyramids", 49, 3, 5, PETSC_FALSE},  {"TetrahedraP2", 30, 3, 10, PETSC_FALSE},
@@ -30,32 +30,39 @@ static PetscBool RecogniseMedit(const char *bytes, size_t length)
   return EqmReadKeyword(&in, "MeshVersionFormatted");
 }
 
-/* EqmMeditStartCells - room for `count` cells that begin where the cursor stands; NULL if they are of a kind that is
-   only noted. Not collective. Errors: EQM_ERR_IO (quiet) if the vertices are not known yet. */
-PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 count, PetscInt **cells)
+/* EqmMeditStartCells - `count` cells begin at the cursor; a kind that is not wanted is noted. Not collective. Errors:
+   EQM_ERR_IO (quiet) if the vertices are not known yet. */
+PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 count)
 {
   char what[64];
 
-  *cells = NULL;
   if (!kind->wanted) {
     snprintf(what, sizeof(what), "%lld %s", (long long)count, kind->keyword);
     if (count) EqmBuilderNoteOther(builder, kind->dimension, builder->in->cursor, what);
     return 0;
   }
-  if (!builder->num_vertices && count) {
-    return EqmReject(builder->in, EQM_ERR_IO, "the section %s comes before the section Vertices", kind->keyword);
-  }
-  return EqmBuilderAddCells(builder, kind->num_corners, (size_t)count, cells);
+  if (builder->num_vertices || !count) return 0;
+  return EqmReject(builder->in, EQM_ERR_IO, "the section %s comes before the section Vertices", kind->keyword);
 }
 
-/* EqmMeditTakeCorner - from the file's vertex number to ours. Not collective. Errors: EQM_ERR_IO (quiet). */
-PetscErrorCode EqmMeditTakeCorner(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 vertex, PetscInt *corner)
+/* EqmMeditAddCell - append a cell of a wanted kind by the file's vertex numbers, which count from 1. Not collective.
+   Errors: EQM_ERR_IO (quiet). */
+PetscErrorCode EqmMeditAddCell(EqmBuilder *builder, const EqmMeditKind *kind, const PetscInt64 *vertices)
 {
-  if (vertex < 1 || vertex > (PetscInt64)builder->num_vertices) {
-    return EqmReject(builder->in, EQM_ERR_IO, "%s: vertex number %lld is out of range 1..%zu", kind->keyword,
-                     (long long)vertex, builder->num_vertices);
+  PetscInt64 corners[EQM_MEDIT_MAX_CORNERS];
+  PetscInt *cell;
+
+  for (PetscInt k = 0; k < kind->num_corners; ++k) {
+    if (vertices[k] < 1 || vertices[k] > (PetscInt64)builder->num_vertices) {
+      return EqmReject(builder->in, EQM_ERR_IO, "%s: vertex number %lld is out of range 1..%zu", kind->keyword,
+                       (long long)vertices[k], builder->num_vertices);
+    }
+    corners[k] = vertices[k] - 1;
   }
-  *corner = (PetscInt)(vertex - 1);
+  if (kind->dimension == 2)
+    return EqmBuilderAddFace(builder, NULL, (PetscInt64)builder->num_vertices, kind->num_corners, corners);
+  EqmTry(EqmBuilderAddCells(builder, kind->num_corners, 1, &cell));
+  for (PetscInt k = 0; k < kind->num_corners; ++k) cell[k] = (PetscInt)corners[k];
   return 0;
 }
 
@@ -101,18 +108,15 @@ static PetscErrorCode ParseVertices(Medit *medit)
 
 static PetscErrorCode ParseCells(Medit *medit, const EqmMeditKind *kind)
 {
-  PetscInt64 count, value;
-  PetscInt *cells;
+  PetscInt64 count, reference, corners[EQM_MEDIT_MAX_CORNERS];
 
   EqmSkipSpace(medit->in, '#');
   EqmTry(EqmReadCount(medit->in, kind->keyword, 2 * (size_t)kind->num_corners + 2, &count));
-  EqmTry(EqmMeditStartCells(&medit->builder, kind, count, &cells));
-  for (PetscInt64 i = 0; cells && i < count; ++i) {
-    for (PetscInt k = 0; k < kind->num_corners; ++k) {
-      EqmTry(ReadInteger(medit, kind->keyword, &value));
-      EqmTry(EqmMeditTakeCorner(&medit->builder, kind, value, &cells[kind->num_corners * i + k]));
-    }
-    EqmTry(ReadInteger(medit, kind->keyword, &value));
+  EqmTry(EqmMeditStartCells(&medit->builder, kind, count));
+  for (PetscInt64 i = 0; kind->wanted && i < count; ++i) {
+    for (PetscInt k = 0; k < kind->num_corners; ++k) EqmTry(ReadInteger(medit, kind->keyword, &corners[k]));
+    EqmTry(ReadInteger(medit, kind->keyword, &reference));
+    EqmTry(EqmMeditAddCell(&medit->builder, kind, corners));
   }
   return 0;
 }

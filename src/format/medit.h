@@ -8,15 +8,15 @@
 typedef struct {
   const char *keyword;
   PetscInt code, dimension, num_corners;
-  PetscBool wanted; /* triangles and tetrahedra; the others are only noted */
+  PetscBool wanted; /* faces and tetrahedra; the others are only noted */
 } EqmMeditKind;
 
 #define EQM_MEDIT_NUM_KINDS 8
 PETSC_INTERN const EqmMeditKind EqmMeditKinds[EQM_MEDIT_NUM_KINDS];
 
-PETSC_INTERN PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 count,
-                                               PetscInt **cells);
-PETSC_INTERN PetscErrorCode EqmMeditTakeCorner(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 vertex,
-                                               PetscInt *corner);
+enum { EQM_MEDIT_MAX_CORNERS = 4 }; /* of a cell that is wanted */
+
+PETSC_INTERN PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 count);
+PETSC_INTERN PetscErrorCode EqmMeditAddCell(EqmBuilder *builder, const EqmMeditKind *kind, const PetscInt64 *vertices);
 
 #endif

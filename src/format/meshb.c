@@ -81,18 +81,17 @@ static PetscErrorCode ParseCells(Meshb *meshb, const EqmMeditKind *kind)
 {
   const size_t bytes = EqmScalarSize(meshb->integer), record_bytes = (size_t)(kind->num_corners + 1) * bytes;
   const char *records;
-  PetscInt64 count;
-  PetscInt *cells;
+  PetscInt64 count, corners[EQM_MEDIT_MAX_CORNERS];
 
   EqmTry(TakeRecords(meshb, kind->keyword, record_bytes, &count, &records));
-  EqmTry(EqmMeditStartCells(&meshb->builder, kind, count, &cells));
-  for (PetscInt64 i = 0; cells && i < count; ++i) {
+  EqmTry(EqmMeditStartCells(&meshb->builder, kind, count));
+  for (PetscInt64 i = 0; kind->wanted && i < count; ++i) {
     for (PetscInt k = 0; k < kind->num_corners; ++k) {
       const char *const corner = records + (size_t)i * record_bytes + (size_t)k * bytes;
 
-      EqmTry(EqmMeditTakeCorner(&meshb->builder, kind, EqmLoadInteger(corner, meshb->integer, meshb->big_endian),
-                                &cells[kind->num_corners * i + k]));
+      corners[k] = EqmLoadInteger(corner, meshb->integer, meshb->big_endian);
     }
+    EqmTry(EqmMeditAddCell(&meshb->builder, kind, corners));
   }
   return 0;
 }

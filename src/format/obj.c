@@ -1,5 +1,5 @@
-/* Wavefront OBJ: `v x y z` and `f a/b/c ...` lines; everything else (normals, textures, groups, materials) is passed
- * over. */
+/* Wavefront OBJ: `v x y z`, `vt u v` and `f a/b/c ...` lines; everything else (normals, groups, materials) is skipped.
+ */
 #include "builder.h"
 #include "format.h"
 
@@ -51,11 +51,24 @@ static PetscErrorCode ParseVertex(EqmInput *in, EqmBuilder *builder)
   return 0;
 }
 
+/* `vt u` or `vt u v`; a third number, of textures in space, is not read. */
+static PetscErrorCode ParseTexturePoint(EqmInput *in, EqmBuilder *builder)
+{
+  PetscReal *uv;
+
+  EqmTry(EqmBuilderAddTexturePoints(builder, 1, &uv));
+  uv[0] = uv[1] = 0.0;
+  if (!EqmReadReal(in, &uv[0])) return EqmReject(in, EQM_ERR_IO, "a texture point needs two numbers after the vt");
+  (void)EqmReadReal(in, &uv[1]);
+  return 0;
+}
+
 /* One corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative indices count back from the last vertex so far. */
-static PetscErrorCode ParseCorner(EqmInput *in, const EqmBuilder *builder, PetscInt64 *corner)
+static PetscErrorCode ParseCorner(EqmInput *in, EqmBuilder *builder, PetscInt64 *corner)
 {
   const PetscInt64 num_vertices = (PetscInt64)builder->num_vertices;
-  const char *next = EqmParseInteger(in->cursor, in->end, corner);
+  const char *next = EqmParseInteger(in->cursor, in->end, corner), *after;
+  PetscInt64 texture = 0;
 
   if (!next || (next < in->end && !EqmIsSpace(*next) && *next != '/')) {
     return EqmReject(in, EQM_ERR_IO, "a corner of a face must be a vertex index, or indices separated by slashes");
@@ -65,9 +78,12 @@ static PetscErrorCode ParseCorner(EqmInput *in, const EqmBuilder *builder, Petsc
                      (long long)num_vertices);
   }
   *corner = *corner > 0 ? *corner - 1 : *corner + num_vertices;
+  after = next < in->end && *next == '/' ? EqmParseInteger(next + 1, in->end, &texture) : NULL;
+  if (!after) texture = 0;
+  if (texture < 0) texture += (PetscInt64)builder->num_texture_points + 1;
   in->cursor = next;
   while (in->cursor < in->end && !EqmIsSpace(*in->cursor)) ++in->cursor;
-  return 0;
+  return EqmBuilderAddCorner(builder, *corner, texture - 1);
 }
 
 /* A backslash at the end of a line continues it. */
@@ -83,17 +99,15 @@ static void SkipContinuation(EqmInput *in)
 static PetscErrorCode ParseFace(EqmInput *in, EqmBuilder *builder, Largest *largest)
 {
   const char *position = in->cursor;
-  PetscInt64 corners[3] = {0, 0, 0}, num_corners = 0;
 
+  EqmBuilderStartFace(builder);
   for (SkipContinuation(in); !EqmAtLineEnd(in) && *in->cursor != '#'; SkipContinuation(in)) {
     PetscInt64 corner;
 
     EqmTry(ParseCorner(in, builder, &corner));
-    if (num_corners < 3) corners[num_corners] = corner;
     if (corner > largest->index) *largest = (Largest){corner, position};
-    ++num_corners;
   }
-  return EqmBuilderAddFace(builder, position, PETSC_MAX_INT, num_corners, corners);
+  return EqmBuilderEndFace(builder, position, PETSC_MAX_INT);
 }
 
 static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest *largest, PetscBool *foreign)
@@ -103,6 +117,8 @@ static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest 
 
   if (length == 1 && *word == 'v') {
     EqmTry(ParseVertex(in, builder));
+  } else if (length == 2 && !memcmp(word, "vt", 2)) {
+    EqmTry(ParseTexturePoint(in, builder));
   } else if (length == 1 && *word == 'f') {
     EqmTry(ParseFace(in, builder, largest));
   } else if (length && !IsKeyword(word, length)) {

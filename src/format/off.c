@@ -73,7 +73,7 @@ static PetscErrorCode ParseVertices(EqmInput *in, PetscInt64 num_vertices, EqmBu
 static PetscErrorCode ParseFaces(EqmInput *in, PetscInt64 num_faces, EqmBuilder *builder)
 {
   for (PetscInt64 i = 0; i < num_faces; ++i) {
-    PetscInt64 num_corners, corners[3] = {0, 0, 0};
+    PetscInt64 num_corners, corner;
     const char *position;
 
     EqmSkipSpace(in, '#');
@@ -82,12 +82,14 @@ static PetscErrorCode ParseFaces(EqmInput *in, PetscInt64 num_faces, EqmBuilder 
       return EqmReject(in, EQM_ERR_IO, "face %lld of %lld is missing%s", (long long)i, (long long)num_faces,
                        in->cursor == in->end ? ": the file is truncated" : " its number of corners");
     }
-    for (PetscInt64 k = 0; k < PetscMin(num_corners, 3); ++k) {
-      if (!EqmReadInteger(in, &corners[k])) {
+    EqmBuilderStartFace(builder);
+    for (PetscInt64 k = 0; k < num_corners; ++k) {
+      if (!EqmReadInteger(in, &corner)) {
         return EqmReject(in, EQM_ERR_IO, "face %lld needs %lld vertex indices", (long long)i, (long long)num_corners);
       }
+      EqmTry(EqmBuilderAddCorner(builder, corner, -1));
     }
-    EqmTry(EqmBuilderAddFace(builder, position, (PetscInt64)builder->num_vertices, num_corners, corners));
+    EqmTry(EqmBuilderEndFace(builder, position, (PetscInt64)builder->num_vertices));
     EqmSkipLine(in); /* colour */
   }
   return 0;

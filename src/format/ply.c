@@ -5,7 +5,17 @@
 
 #include <string.h>
 
-typedef enum { ROLE_NONE, ROLE_X, ROLE_Y, ROLE_Z, ROLE_CORNERS } Role;
+typedef enum {
+  ROLE_NONE,
+  ROLE_X,
+  ROLE_Y,
+  ROLE_Z,
+  ROLE_S, /* texture coordinates of a vertex */
+  ROLE_T,
+  ROLE_CORNERS,
+  ROLE_TEXTURE, /* of the corners of a face, two numbers each */
+  NUM_ROLES
+} Role;
 
 typedef struct {
   EqmScalarType count_type; /* EQM_SCALAR_NONE: one number, not a list */
@@ -17,7 +27,7 @@ typedef struct {
 #define MAX_ELEMENTS   32
 
 typedef struct {
-  PetscBool is_vertex, is_face;
+  PetscBool is_vertex, is_face, is_strips, has_texture;
   PetscInt64 count;
   const char *position; /* of the header line, for messages */
   PetscInt num_properties;
@@ -28,8 +38,16 @@ typedef struct {
   PetscBool ascii, big_endian;
   PetscInt num_elements;
   PetscInt64 num_vertices;
+  PetscBool textured; /* vertices have texture coordinates */
   Element element[MAX_ELEMENTS];
 } Header;
+
+/* What the entries of lists become, in arrays that grow. */
+typedef struct {
+  PetscInt64 num_corners, corner_capacity, num_reals, real_capacity;
+  PetscInt64 *corners;
+  PetscReal *reals;
+} Lists;
 
 /* The first line is "ply". Not collective. */
 static PetscBool RecognisePly(const char *bytes, size_t length)
@@ -62,12 +80,19 @@ static PetscErrorCode ParseType(EqmInput *in, EqmScalarType *type)
 
 static Role RoleOf(const Element *element, PetscBool is_list, const char *name, size_t length)
 {
-  if (element->is_vertex && !is_list && length == 1 && *name >= 'x' && *name <= 'z') {
-    return (Role)(ROLE_X + (*name - 'x'));
+  static const char *const s_names[] = {"s", "u", "texture_u", "texture_s"}, *const t_names[] = {"t", "v", "texture_v",
+                                                                                                 "texture_t"};
+
+  if (element->is_vertex && !is_list) {
+    if (length == 1 && *name >= 'x' && *name <= 'z') return (Role)(ROLE_X + (*name - 'x'));
+    for (int i = 0; i < 4; ++i) {
+      if (EqmWordIs(name, length, s_names[i])) return ROLE_S;
+      if (EqmWordIs(name, length, t_names[i])) return ROLE_T;
+    }
   }
-  if (element->is_face && is_list &&
-      (EqmWordIs(name, length, "vertex_indices") || EqmWordIs(name, length, "vertex_index"))) {
-    return ROLE_CORNERS;
+  if ((element->is_face || element->is_strips) && is_list) {
+    if (EqmWordIs(name, length, "vertex_indices") || EqmWordIs(name, length, "vertex_index")) return ROLE_CORNERS;
+    if (element->is_face && EqmWordIs(name, length, "texcoord")) return ROLE_TEXTURE;
   }
   return ROLE_NONE;
 }
@@ -112,6 +137,7 @@ static PetscErrorCode ParseElement(EqmInput *in, Header *header)
   length = EqmReadWord(in, &name);
   element->is_vertex = EqmWordIs(name, length, "vertex");
   element->is_face = EqmWordIs(name, length, "face");
+  element->is_strips = EqmWordIs(name, length, "tristrips");
   if (!EqmReadInteger(in, &element->count) || element->count < 0) {
     return EqmReject(in, EQM_ERR_IO, "an element needs a name and a number");
   }
@@ -128,13 +154,13 @@ static PetscErrorCode ParseEncoding(EqmInput *in, Header *header)
 }
 
 /* The vertex element must come once, with coordinates; the face element must have a list of vertices. */
-static PetscErrorCode CheckHeader(EqmInput *in, const Header *header)
+static PetscErrorCode CheckHeader(EqmInput *in, Header *header)
 {
   PetscInt num_vertex_elements = 0;
 
   for (PetscInt e = 0; e < header->num_elements; ++e) {
-    const Element *element = &header->element[e];
-    PetscInt has[ROLE_CORNERS + 1] = {0};
+    Element *element = &header->element[e];
+    PetscInt has[NUM_ROLES] = {0};
 
     for (PetscInt p = 0; p < element->num_properties; ++p) ++has[element->property[p].role];
     if (element->is_vertex) {
@@ -143,9 +169,11 @@ static PetscErrorCode CheckHeader(EqmInput *in, const Header *header)
         return EqmRejectAt(in, element->position, EQM_ERR_IO, "vertices need the properties x, y and z, once each");
       }
     }
-    if (element->is_face && element->count && has[ROLE_CORNERS] != 1) {
+    if (element->is_vertex) header->textured = has[ROLE_S] == 1 && has[ROLE_T] == 1 ? PETSC_TRUE : PETSC_FALSE;
+    if ((element->is_face || element->is_strips) && element->count && has[ROLE_CORNERS] != 1) {
       return EqmRejectAt(in, element->position, EQM_ERR_IO, "faces need one list property vertex_indices");
     }
+    element->has_texture = has[ROLE_TEXTURE] == 1 ? PETSC_TRUE : PETSC_FALSE;
   }
   if (num_vertex_elements != 1) return EqmReject(in, EQM_ERR_IO, "the header needs one element named vertex");
   return 0;
@@ -214,55 +242,95 @@ static PetscErrorCode ReadWhole(EqmInput *in, const Header *header, EqmScalarTyp
   return 0;
 }
 
-/* A list; its first three entries if they are corners. */
-static PetscErrorCode ReadList(EqmInput *in, const Header *header, const Property *property, PetscInt64 *count,
-                               PetscInt64 corners[3])
+static PetscErrorCode GrowList(size_t entry_bytes, PetscInt64 count, PetscInt64 *capacity, void *array)
+{
+  if (count < *capacity) return 0;
+  *capacity = PetscMax(16, 2 * *capacity);
+  return PetscRealloc((size_t)*capacity * entry_bytes, (void **)array);
+}
+
+/* A list: corners and texture coordinates are kept, others skipped. */
+static PetscErrorCode ReadList(EqmInput *in, const Header *header, const Property *property, Lists *lists)
 {
   const char *position = in->cursor, *bytes;
+  PetscInt64 count;
 
-  EqmTry(ReadWhole(in, header, property->count_type, count));
-  if (*count < 0) return EqmRejectAt(in, position, EQM_ERR_IO, "a list cannot have %lld entries", (long long)*count);
-  for (PetscInt64 k = 0; k < *count; ++k) {
+  EqmTry(ReadWhole(in, header, property->count_type, &count));
+  if (count < 0) return EqmRejectAt(in, position, EQM_ERR_IO, "a list cannot have %lld entries", (long long)count);
+  if (property->role == ROLE_NONE && !header->ascii) { /* in one step */
+    if ((size_t)count > EqmRemaining(in)) return EqmReject(in, EQM_ERR_IO, "the file ends inside a list");
+    return EqmTakeBytes(in, (size_t)count * EqmScalarSize(property->type), "list", &bytes);
+  }
+  for (PetscInt64 k = 0; k < count; ++k) {
     PetscReal unused;
 
-    if (property->role == ROLE_CORNERS && k < 3) {
-      EqmTry(ReadWhole(in, header, property->type, &corners[k]));
-    } else if (header->ascii) {
+    if (property->role == ROLE_CORNERS) {
+      EqmTry(GrowList(sizeof(PetscInt64), lists->num_corners, &lists->corner_capacity, &lists->corners));
+      EqmTry(ReadWhole(in, header, property->type, &lists->corners[lists->num_corners++]));
+    } else if (property->role == ROLE_TEXTURE) {
+      EqmTry(GrowList(sizeof(PetscReal), lists->num_reals, &lists->real_capacity, &lists->reals));
+      EqmTry(ReadNumber(in, header, property->type, &lists->reals[lists->num_reals++]));
+    } else {
       EqmTry(ReadNumber(in, header, property->type, &unused));
-    } else { /* the rest in one step */
-      if ((size_t)(*count - k) > EqmRemaining(in)) return EqmReject(in, EQM_ERR_IO, "the file ends inside a list");
-      return EqmTakeBytes(in, (size_t)(*count - k) * EqmScalarSize(property->type), "list", &bytes);
     }
   }
   return 0;
 }
 
+/* The texture point of a corner: its own, or that of its vertex, or none. */
+static PetscErrorCode AddFace(const Header *header, const Element *element, const char *position, const Lists *lists,
+                              EqmBuilder *builder)
+{
+  const PetscBool own = element->has_texture && lists->num_corners > 2 && lists->num_reals == 2 * lists->num_corners
+                            ? PETSC_TRUE
+                            : PETSC_FALSE;
+  PetscInt64 first = (PetscInt64)builder->num_texture_points;
+  PetscReal *uv;
+
+  if (element->is_strips)
+    return EqmBuilderAddStrip(builder, position, header->num_vertices, lists->num_corners, lists->corners);
+  if (own) {
+    EqmTry(EqmBuilderAddTexturePoints(builder, (size_t)lists->num_corners, &uv));
+    for (PetscInt64 k = 0; k < lists->num_reals; ++k) uv[k] = lists->reals[k];
+  }
+  EqmBuilderStartFace(builder);
+  for (PetscInt64 k = 0; k < lists->num_corners; ++k) {
+    const PetscInt64 vertex = lists->corners[k];
+
+    EqmTry(EqmBuilderAddCorner(builder, vertex, own ? first + k : header->textured ? vertex : -1));
+  }
+  return EqmBuilderEndFace(builder, position, header->num_vertices);
+}
+
+/* One vertex, whose coordinates go to x and (where there are some) uv, or one face, or a row to be skipped. */
 static PetscErrorCode ReadRow(EqmInput *in, const Header *header, const Element *element, EqmBuilder *builder,
-                              PetscReal *x)
+                              PetscReal *x, PetscReal *uv, Lists *lists)
 {
   const char *position = in->cursor;
 
   if (header->ascii) EqmSkipSpace(in, 0);
+  lists->num_corners = lists->num_reals = 0;
   for (PetscInt p = 0; p < element->num_properties; ++p) {
     const Property *property = &element->property[p];
-    PetscInt64 count, corners[3] = {0, 0, 0};
     PetscReal value;
 
-    if (!property->count_type) {
-      EqmTry(ReadNumber(in, header, property->type, &value));
-      if (property->role) x[property->role - ROLE_X] = value;
-    } else {
-      EqmTry(ReadList(in, header, property, &count, corners));
-      if (property->role) EqmTry(EqmBuilderAddFace(builder, position, header->num_vertices, count, corners));
+    if (property->count_type) {
+      EqmTry(ReadList(in, header, property, lists));
+      continue;
     }
+    EqmTry(ReadNumber(in, header, property->type, &value));
+    if (property->role >= ROLE_X && property->role <= ROLE_Z) x[property->role - ROLE_X] = value;
+    if (property->role >= ROLE_S && property->role <= ROLE_T && uv) uv[property->role - ROLE_S] = value;
   }
-  return 0;
+  return element->is_face || element->is_strips ? AddFace(header, element, position, lists, builder) : 0;
 }
 
 static PetscErrorCode ParseRows(EqmInput *in, const Header *header, const Element *element, EqmBuilder *builder)
 {
   const size_t smallest = SmallestRow(header, element);
-  PetscReal *vertices = NULL;
+  PetscReal *vertices = NULL, *uv = NULL;
+  Lists lists = {0};
+  PetscErrorCode code = 0;
 
   if (!smallest) return 0; /* rows without properties have no bytes in the file */
   if ((size_t)element->count > (EqmRemaining(in) + 1) / smallest) {
@@ -272,10 +340,12 @@ static PetscErrorCode ParseRows(EqmInput *in, const Header *header, const Elemen
                        (long long)element->count);
   }
   if (element->is_vertex) EqmTry(EqmBuilderAddVertices(builder, (size_t)element->count, &vertices));
-  for (PetscInt64 i = 0; i < element->count; ++i) {
-    EqmTry(ReadRow(in, header, element, builder, vertices ? vertices + 3 * i : NULL));
-  }
-  return 0;
+  if (element->is_vertex && header->textured) EqmTry(EqmBuilderAddTexturePoints(builder, (size_t)element->count, &uv));
+  for (PetscInt64 i = 0; i < element->count && !code; ++i)
+    code = ReadRow(in, header, element, builder, vertices ? vertices + 3 * i : NULL, uv ? uv + 2 * i : NULL, &lists);
+  EqmTry(PetscFree(lists.corners));
+  EqmTry(PetscFree(lists.reals));
+  return code;
 }
 
 static PetscErrorCode ParseMesh(EqmInput *in, Header *header, EqmBuilder *builder)

@@ -179,13 +179,16 @@ static PetscErrorCode ReadCells(Vtk *vtk, EqmVtkCells *cells)
   return SplitCells(vtk, first, second, cells);
 }
 
-/* Cells of a surface (`kept`), or vertices, lines and strips beside it. */
-static PetscErrorCode ParsePolygons(Vtk *vtk, PetscBool kept)
+/* Cells of a surface: polygons, triangle strips, or vertices and lines, which are skipped. */
+typedef enum { CELLS_POLYGONS, CELLS_STRIPS, CELLS_SKIPPED } SurfaceCells;
+
+static PetscErrorCode ParseSurfaceCells(Vtk *vtk, SurfaceCells kind)
 {
-  EqmVtkCells cells = {0};
+  EqmVtkCells cells = {.strips = kind == CELLS_STRIPS ? PETSC_TRUE : PETSC_FALSE};
   PetscErrorCode code = ReadCells(vtk, &cells);
 
-  if (!code && kept) code = EqmBuilderAddVtkCells(&vtk->builder, &cells, 0, (PetscInt64)vtk->builder.num_vertices);
+  if (!code && kind != CELLS_SKIPPED)
+    code = EqmBuilderAddVtkCells(&vtk->builder, &cells, 0, (PetscInt64)vtk->builder.num_vertices);
   EqmTry(EqmVtkCellsReset(&cells));
   return code;
 }
@@ -247,13 +250,10 @@ static PetscErrorCode ParseSection(Vtk *vtk, PetscBool *last)
   EqmInput *in = vtk->in;
 
   if (EqmReadKeyword(in, "POINTS")) return ParsePoints(vtk);
-  if (vtk->polydata && EqmReadKeyword(in, "POLYGONS")) return ParsePolygons(vtk, PETSC_TRUE);
-  if (vtk->polydata && EqmReadKeyword(in, "VERTICES")) return ParsePolygons(vtk, PETSC_FALSE);
-  if (vtk->polydata && EqmReadKeyword(in, "LINES")) return ParsePolygons(vtk, PETSC_FALSE);
-  if (vtk->polydata && EqmReadKeyword(in, "TRIANGLE_STRIPS")) {
-    EqmBuilderNoteOther(&vtk->builder, 2, in->cursor, "a triangle strip");
-    return ParsePolygons(vtk, PETSC_FALSE);
-  }
+  if (vtk->polydata && EqmReadKeyword(in, "POLYGONS")) return ParseSurfaceCells(vtk, CELLS_POLYGONS);
+  if (vtk->polydata && EqmReadKeyword(in, "VERTICES")) return ParseSurfaceCells(vtk, CELLS_SKIPPED);
+  if (vtk->polydata && EqmReadKeyword(in, "LINES")) return ParseSurfaceCells(vtk, CELLS_SKIPPED);
+  if (vtk->polydata && EqmReadKeyword(in, "TRIANGLE_STRIPS")) return ParseSurfaceCells(vtk, CELLS_STRIPS);
   if (!vtk->polydata && EqmReadKeyword(in, "CELLS")) return ParseGridCells(vtk);
   if (!vtk->polydata && EqmReadKeyword(in, "CELL_TYPES")) return ParseCellTypes(vtk);
   if (EqmReadKeyword(in, "FIELD")) return SkipField(vtk);

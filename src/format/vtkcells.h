@@ -8,7 +8,8 @@ typedef struct {
   PetscInt64 num_cells, num_corners;
   PetscInt64 *end;     /* num_cells: where the corners of a cell end; they begin where those of the cell before end */
   PetscInt64 *corners; /* num_corners */
-  PetscInt64 *type;    /* num_cells; NULL: all are polygons */
+  PetscInt64 *type;    /* num_cells; NULL: all are polygons, or triangle strips */
+  PetscBool strips;
 } EqmVtkCells;
 
 PETSC_INTERN PetscErrorCode EqmBuilderAddVtkCells(EqmBuilder *builder, const EqmVtkCells *cells,

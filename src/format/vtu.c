@@ -87,28 +87,42 @@ static PetscErrorCode ReadCells(const EqmVtuEncoding *encoding, xmlNodePtr paren
   return EqmVtuReadIntegers(encoding, array, cells->num_corners, &cells->corners);
 }
 
-static PetscErrorCode ParsePiece(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr piece,
-                                 PetscBool surface)
+/* A kind of cells in a piece: the attribute with their number and the element with their arrays. */
+typedef struct {
+  const char *count, *element;
+  PetscBool has_types, strips;
+} CellKind;
+
+static PetscErrorCode ParseCells(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr piece,
+                                 const CellKind *kind, PetscInt64 first_vertex, PetscInt64 num_points)
 {
-  const PetscInt64 first_vertex = (PetscInt64)builder->num_vertices;
-  const char *attribute = surface ? "NumberOfPolys" : "NumberOfCells", *element = surface ? "Polys" : "Cells";
-  EqmVtkCells cells = {0};
-  PetscInt64 num_points, num_strips;
+  EqmVtkCells cells = {.strips = kind->strips};
   PetscErrorCode code;
 
-  EqmTry(ParsePoints(encoding, builder, piece, &num_points));
-  if (!EqmXmlInteger(piece, attribute, &cells.num_cells) || cells.num_cells < 0) {
-    return EqmXmlReject(encoding->in, piece, "%s is missing or not a whole number", attribute);
-  }
-  if (surface && EqmXmlInteger(piece, "NumberOfStrips", &num_strips) && num_strips > 0) {
-    EqmBuilderNoteOther(builder, 2, NULL, "the surface has triangle strips");
+  if (!EqmXmlInteger(piece, kind->count, &cells.num_cells) || cells.num_cells < 0) {
+    if (kind->strips) return 0;
+    return EqmXmlReject(encoding->in, piece, "%s is missing or not a whole number", kind->count);
   }
   if (!cells.num_cells) return 0;
-  if (!EqmXmlChild(piece, element)) return EqmXmlReject(encoding->in, piece, "it has no %s", element);
-  code = ReadCells(encoding, EqmXmlChild(piece, element), surface ? PETSC_FALSE : PETSC_TRUE, &cells);
+  if (!EqmXmlChild(piece, kind->element)) return EqmXmlReject(encoding->in, piece, "it has no %s", kind->element);
+  code = ReadCells(encoding, EqmXmlChild(piece, kind->element), kind->has_types, &cells);
   if (!code) code = EqmBuilderAddVtkCells(builder, &cells, first_vertex, num_points);
   EqmTry(EqmVtkCellsReset(&cells));
   return code;
+}
+
+static PetscErrorCode ParsePiece(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr piece,
+                                 PetscBool surface)
+{
+  static const CellKind grid = {"NumberOfCells", "Cells", PETSC_TRUE, PETSC_FALSE},
+                        polygons = {"NumberOfPolys", "Polys", PETSC_FALSE, PETSC_FALSE},
+                        strips = {"NumberOfStrips", "Strips", PETSC_FALSE, PETSC_TRUE};
+  const PetscInt64 first_vertex = (PetscInt64)builder->num_vertices;
+  PetscInt64 num_points;
+
+  EqmTry(ParsePoints(encoding, builder, piece, &num_points));
+  EqmTry(ParseCells(encoding, builder, piece, surface ? &polygons : &grid, first_vertex, num_points));
+  return surface ? ParseCells(encoding, builder, piece, &strips, first_vertex, num_points) : 0;
 }
 
 static PetscErrorCode ParseDocument(EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr root)

@@ -147,6 +147,7 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DIAGNOSE));
   intake->mapped = intake->given;
+  if (!options->quiet && plain->note[0]) PetscCall(PetscPrintf(comm, "note: %s: %s\n", plain->file, plain->note));
   if (options->repair) PetscCall(Mend(intake));
   if (options->repair && !options->quiet) PetscCall(EqmPrintRepair(comm, options->part, &intake->repair));
   PetscCall(Diagnose(options->target, intake, &fatal, text, sizeof(text)));

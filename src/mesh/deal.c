@@ -114,7 +114,10 @@ PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const
   PetscCallMPI(MPI_Bcast(shape, 3, MPIU_INT, 0, comm));
   PetscCall(Deal(comm, shape[0], MPIU_REAL, 3, TAG_VERTICES, mesh.vertices, &num_vertices, &vertices));
   PetscCall(Deal(comm, shape[1], MPIU_INT, shape[2], TAG_CELLS, mesh.cells, &num_cells, &cells));
+  PetscCall(PetscFree(mesh.texture)); /* a soup has none */
+  PetscCallMPI(MPI_Bcast(mesh.note, EQM_SOUP_NOTE, MPI_CHAR, 0, comm));
   PetscCall(EqmSoupCreateFromSlabs(comm, shape[2], num_vertices, vertices, num_cells, cells, file, soup));
+  PetscCall(PetscStrncpy((*soup)->note, mesh.note, EQM_SOUP_NOTE));
   PetscFunctionReturn(0);
 }
 

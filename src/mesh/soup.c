@@ -120,6 +120,7 @@ PetscErrorCode EqmSerialMeshReset(EqmSerialMesh *serial)
   PetscFunctionBegin;
   PetscCall(PetscFree(serial->vertices));
   PetscCall(PetscFree(serial->cells));
+  PetscCall(PetscFree(serial->texture));
   memset(serial, 0, sizeof(*serial));
   PetscFunctionReturn(0);
 }

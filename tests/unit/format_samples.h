@@ -366,6 +366,7 @@ static void MakeVtk(Sample *samples, int *count, int binary, int version, PetscI
 
 #include "format_samples_xml.h"
 #include "format_samples_medit.h"
+#include "format_samples_faces.h"
 
 /* Fill `samples` (MAX_SAMPLES) and return how many there are. */
 static int MakeSamples(Sample *samples)
@@ -391,6 +392,7 @@ static int MakeSamples(Sample *samples)
   }
   MakeAllVtu(samples, &count);
   MakeAllMedit(samples, &count);
+  MakeAllFaces(samples, &count);
   for (int way = 0; way < 3; ++way) MakeGifti(samples, &count, way);
   return count;
 }

@@ -120,7 +120,7 @@ static const double hard_vertices[15] = {0.1,
 static EqmSoup HardSoup(PetscInt cell_size)
 {
   const PetscInt num_cells = cell_size == 3 ? 4 : 2;
-  EqmSerialMesh mesh = {5, num_cells, cell_size, NULL, NULL};
+  EqmSerialMesh mesh = {.num_vertices = 5, .num_cells = num_cells, .cell_size = cell_size};
   EqmSoup soup = NULL;
   int rank;
 
@@ -182,7 +182,8 @@ static void TestFields(void)
   const EqmField fields[] = {{"a & b", PETSC_FALSE, 2, on_vertices}, {"ratio", PETSC_TRUE, 1, on_cells}};
   PetscReal vertices[15];
   PetscInt cells[12];
-  EqmSerialMesh mesh = {5, 4, 3, vertices, cells}, back = {0};
+  EqmSerialMesh mesh = {.num_vertices = 5, .num_cells = 4, .cell_size = 3, .vertices = vertices, .cells = cells},
+                back = {0};
   char error[EQM_MESSAGE_MAX] = "", *bytes;
   static const char *const names[] = {"f.vtu", "f.ply", "f.gii", "f.obj", "f.vtk", "f.mesh", "f.msh"};
   size_t length;
@@ -220,7 +221,6 @@ static const BadFile bad_files[] = {
     {"garbage.obj", EQM_ERR_IO, "line 1", "\1\2\3\4\5\6"},
     {"prose.obj", EQM_ERR_IO, "not an OBJ file", "Dear reader,\nthis is a letter.\n"},
     {"points.obj", EQM_ERR_MESH, "no triangles", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"},
-    {"quads.obj", EQM_ERR_MESH, "line 5: face 0 has 4 corners", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"},
     {"range.obj", EQM_ERR_IO, "line 4: vertex index 99 is out of range 1..3",
      "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99\nf 1 2 3\n"},
     {"huge.obj", EQM_ERR_IO, "out of range", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999\n"},
@@ -233,7 +233,8 @@ static const BadFile bad_files[] = {
     {"liar.off", EQM_ERR_IO, "too short", "OFF\n1000000000000 1 0\n0 0 0\n"},
     {"range.off", EQM_ERR_IO, "line 6: vertex index 3 is out of range 0..2",
      "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"},
-    {"quads.off", EQM_ERR_MESH, "4 corners", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"},
+    {"corner.off", EQM_ERR_IO, "vertex index 4 is out of range 0..3",
+     "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 4\n"},
     {"points.off", EQM_ERR_MESH, "no triangles", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"},
     {"binary.off", EQM_ERR_IO, "binary", "OFF BINARY\n"},
     {"four.off", EQM_ERR_IO, "OFF file begins", "4OFF\n3 1 0\n"},
@@ -249,9 +250,9 @@ static const BadFile bad_files[] = {
     {"truncated.stl", EQM_ERR_IO, "truncated", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"},
     {"none.stl", EQM_ERR_MESH, "no triangles", "solid a\nendsolid a\n"},
     {"garbage.stl", EQM_ERR_IO, "truncated", "this is no solid"},
-    {"quads.msh", EQM_ERR_MESH, "type 3",
+    {"quads.msh", EQM_ERR_MESH, "type 16",
      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n1\n1 "
-     "3 0 1 2 3 4\n$EndElements\n"},
+     "16 0 1 2 3 4 1 2 3 4\n$EndElements\n"},
     {"second.msh", EQM_ERR_MESH, "type 11 with 10 nodes",
      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 11 0 1 1 1 1 1 1 1 1 1 "
      "1\n$EndElements\n"},
@@ -272,9 +273,9 @@ static const BadFile bad_files[] = {
     {"garbage.vtk", EQM_ERR_IO, "ASCII or BINARY", "# vtk DataFile Version 3.0\ntitle\nNEITHER\n"},
     {"none.vtk", EQM_ERR_MESH, "no triangles",
      "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\n"},
-    {"quads.vtk", EQM_ERR_MESH, "VTK type 7",
-     "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\nPOLYGONS 1 "
-     "5\n4 0 1 2 3\n"},
+    {"second.vtk", EQM_ERR_MESH, "VTK type 22",
+     "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 1 1 0\nCELLS 1 "
+     "7\n6 0 1 2 0 1 2\nCELL_TYPES 1\n22\n"},
     {"word.mesh", EQM_ERR_IO, "begins with MeshVersionFormatted", "MFEM mesh v1.0\n"},
     {"none.mesh", EQM_ERR_MESH, "no triangles", "MeshVersionFormatted 1\nDimension 3\nVertices 1\n0 0 0 0\nEnd\n"},
     {"truncated.mesh", EQM_ERR_IO, "line 4: vertex 1 of 2 needs 3 coordinates: the file is truncated",
