@@ -38,16 +38,22 @@ PetscReal EqmCellMeasure(const EqmVicinity *vicinity, PetscInt cell, PetscReal *
   return measure;
 }
 
-/* Vertices that are not finite, and cells of this slab that cannot be looked at. */
+/* Vertices in use whose coordinates are not finite. Programs that mask points leave NaN in vertices that no cell uses:
+   these do no harm. */
+static void FindNotFinite(const EqmVicinity *vicinity, EqmFinding *finding)
+{
+  for (PetscInt v = 0; v < vicinity->num_owned; v++) {
+    const PetscReal *const x = vicinity->position + 3 * v;
+
+    if (vicinity->star_start[v] == vicinity->star_start[v + 1]) continue;
+    if (PetscIsInfOrNanReal(x[0]) || PetscIsInfOrNanReal(x[1]) || PetscIsInfOrNanReal(x[2]))
+      EqmFindingAdd(finding, vicinity->input[v], -1, -1, -1);
+  }
+}
+
+/* Cells of this slab that cannot be used. */
 static void DiagnoseSlab(EqmSoup soup, EqmDiagnosis *diagnosis)
 {
-  for (PetscInt v = soup->vertex_start; v < soup->vertex_end; v++) {
-    const PetscReal *const x = soup->vertices + 3 * (v - soup->vertex_start);
-
-    if (PetscIsInfOrNanReal(x[0]) || PetscIsInfOrNanReal(x[1]) || PetscIsInfOrNanReal(x[2])) {
-      EqmFindingAdd(&diagnosis->finding[EQM_FINDING_NOT_FINITE], v, -1, -1, -1);
-    }
-  }
   for (PetscInt c = soup->cell_start; c < soup->cell_end; c++) {
     const EqmCellUse use = EqmSoupCellUse(soup, soup->cells + soup->cell_size * (c - soup->cell_start));
 
@@ -88,6 +94,7 @@ PetscErrorCode EqmDiagnoseCells(EqmSoup soup, const EqmVicinity *vicinity, EqmDi
   PetscInt64 signs[2] = {0, 0};
 
   PetscFunctionBegin;
+  FindNotFinite(vicinity, &diagnosis->finding[EQM_FINDING_NOT_FINITE]);
   DiagnoseSlab(soup, diagnosis);
   diagnosis->measure = diagnosis->largest_cell = 0.0;
   diagnosis->smallest_cell = PETSC_MAX_REAL;

@@ -191,6 +191,13 @@ static PetscErrorCode TestVerticesAndCells(void)
 
   draft = (Draft){0};
   AddGrid(&draft, 4, 0.0);
+  (void)AddVertex(&draft, NAN, INFINITY, 0.0); /* of no cell: no harm */
+  PetscCall(Diagnose(&draft, &d));
+  CHECK_FINDING(d, EQM_FINDING_NOT_FINITE, 0, -1, -1, -1);
+  CHECK_FINDING(d, EQM_FINDING_UNREFERENCED, 1, 25, -1, -1);
+
+  draft = (Draft){0};
+  AddGrid(&draft, 4, 0.0);
   (void)AddCell(&draft, 3, 25, 4, -1);
   (void)AddCell(&draft, 0, -7, PETSC_MAX_INT, -1);
   (void)AddCell(&draft, 5, 9, 5, -1);  /* 34 */
