@@ -46,41 +46,62 @@ struct _p_EqmMesh {
   PetscInt num_blocks;
   PetscInt *block_vertex, *block_start, *block_cell;
 
-  /* Way back to input numbering. */
+  /* Input numbering. */
   PetscInt *vertex_input; /* per owned vertex */
   PetscInt *cell_input;   /* per local cell */
   PetscInt soup_vertices; /* vertices of the soup, unreferenced ones included */
 
-  char file[PETSC_MAX_PATH_LEN]; /* where the soup came from */
+  char file[PETSC_MAX_PATH_LEN]; /* that the soup was read from */
   PetscInt64 identity;           /* CRC-32 of the soup's vertices, cells and density: tells it from other meshes */
 };
 
-/* Build the distributed mesh of a soup: partition, renumber, exchange one ghost layer. The soup must have passed the
-   diagnosis (manifold, oriented, referenced). Option: -partition metis|slab. Collective. */
+/* EqmMeshCreate - the distributed mesh of a soup: partition, numbering, one layer of ghosts, boundary, measures.
+
+   Collective. soup - must have passed EqmSoupDiagnose for a target (manifold, oriented or, for solids, any signs of
+   volume); it may be destroyed afterwards. ledger - counts the work and must outlive the mesh. mesh - to be freed with
+   EqmMeshDestroy. Option: -partition metis|slab. Errors: EQM_ERR_USAGE where the graph is too large for METIS on one
+   rank. */
 PETSC_EXTERN PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *mesh);
-/* Ask for its options, with help. Collective. */
-PETSC_EXTERN PetscErrorCode EqmMeshAskOptions(PetscOptionItems *PetscOptionsObject);
+/* EqmMeshHelpOptions - list the options of EqmMeshCreate, with help, for -help.
+
+   Collective, between PetscOptionsBegin and PetscOptionsEnd, whose PetscOptionsObject it takes. */
+PETSC_EXTERN PetscErrorCode EqmMeshHelpOptions(PetscOptionItems *PetscOptionsObject);
+/* EqmMeshDestroy - free a mesh. Collective; NULL is fine. */
 PETSC_EXTERN PetscErrorCode EqmMeshDestroy(EqmMesh *mesh);
-/* Fill the ghosts of an array with `width` reals per local vertex from their owners. Collective. */
+/* EqmMeshUpdateGhosts - set the entries of the ghosts to those of their owners.
+
+   Collective. array - `width` reals per local vertex. */
 PETSC_EXTERN PetscErrorCode EqmMeshUpdateGhosts(EqmMesh mesh, PetscInt width, PetscReal *array);
-/* Lumped weights: to each owned vertex its share of the weights of the cells around it; they add up to one over all
-   ranks. Not collective. */
+/* EqmMeshVertexWeights - lumped weights: to each vertex an equal share of the weights of the cells around it.
+
+   Not collective. weights - per owned vertex; they add up to one over all ranks. */
 PETSC_EXTERN PetscErrorCode EqmMeshVertexWeights(EqmMesh mesh, PetscReal *weights);
-/* Order the one boundary loop of a disk-type surface: for every local vertex on it, position in the loop (0 for the
-   vertex of the lowest input number, then along the boundary's direction) and arc length from there, in [0, 1); -1
-   elsewhere. Arrays of num_local. Collective. */
+/* EqmMeshBoundaryLoop - the order of the vertices of a disk-type surface along its one boundary loop.
+
+   Collective; the edges of the loop are gathered on rank 0 for this. place - per local vertex: its position in the
+   loop, from 0, in the direction that has the surface on its left; -1 inside. arc_length - per local vertex: length of
+   the boundary from there, as a share of the whole, in [0, 1); -1 inside. The loop begins with the boundary edge that
+   the file has first. Errors: EQM_ERR_MESH (the boundary is not one loop). */
 PETSC_EXTERN PetscErrorCode EqmMeshBoundaryLoop(EqmMesh mesh, PetscInt *place, PetscReal *arc_length);
-/* From per-owned-vertex (per-owned-cell) values to slabs of the soup's numbering, `width` reals each. Slab entries of
-   vertices that no cell uses keep their value. Collective. */
+/* EqmMeshVerticesToInput - from the mesh's owned vertices to the slabs of the soup's numbering.
+
+   Collective. owned - `width` reals per owned vertex; slab - `width` reals per vertex of this rank's slab; entries of
+   vertices that no cell uses keep their values. */
 PETSC_EXTERN PetscErrorCode EqmMeshVerticesToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *owned,
                                                    PetscReal *slab);
+/* EqmMeshCellsToInput - from the mesh's owned cells to the slabs of the soup's numbering.
+
+   Collective. owned - `width` reals per owned cell; slab - `width` reals per cell of this rank's slab. */
 PETSC_EXTERN PetscErrorCode EqmMeshCellsToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *owned,
                                                 PetscReal *slab);
-/* The other way: from slabs of the soup to all local vertices, ghosts included. Collective. */
+/* EqmMeshVerticesFromInput - from the slabs of the soup to all local vertices, ghosts included.
+
+   Collective. slab - `width` reals per vertex of this rank's slab; local - `width` reals per local vertex. */
 PETSC_EXTERN PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *slab,
                                                      PetscReal *local);
+/* EqmMeshFindVertices - local numbers of vertices given by their input numbers.
 
-/* Local numbers of those of `num` vertices (input numbers) that this rank owns, -1 for the others. Not collective. */
+   Not collective. local - per entry of `input` the local number if this rank owns that vertex, else -1. */
 PETSC_EXTERN PetscErrorCode EqmMeshFindVertices(EqmMesh mesh, PetscInt num, const PetscInt *input, PetscInt *local);
 
 /* The closed surface around a solid, as a mesh of its own: its vertices are the solid's boundary vertices in input
@@ -91,14 +112,24 @@ struct _p_EqmSurface {
   PetscSF vertices; /* roots: the vertices of the soup's slab; leaves: the solid's local boundary vertices */
 };
 
-/* The surface of a mesh of tetrahedra. Errors: EQM_ERR_USAGE (a mesh of triangles). Collective. */
+/* EqmSurfaceCreate - the surface of a solid as a mesh of its own.
+
+   Collective. solid - a mesh of tetrahedra. The surface's vertices are the solid's boundary vertices in input order,
+   its triangles look outward; both are the same for any number of ranks and dealt in contiguous slabs. surface - to be
+   freed with EqmSurfaceDestroy. Errors: EQM_ERR_USAGE (a mesh of triangles). */
 PETSC_EXTERN PetscErrorCode EqmSurfaceCreate(EqmMesh solid, EqmSurface *surface);
+/* EqmSurfaceDestroy - free a surface. Collective; NULL is fine. */
 PETSC_EXTERN PetscErrorCode EqmSurfaceDestroy(EqmSurface *surface);
-/* Carry `width` reals per vertex of the surface's slab to the solid's local boundary vertices, ghosts included; what
-   stands at other vertices stays. Collective. */
+/* EqmSurfaceToSolid - carry values from the surface's vertices to the solid's boundary vertices, ghosts included.
+
+   Collective. slab - `width` reals per vertex of the slab of surface->soup; local - `width` reals per local vertex of
+   the solid; entries of interior vertices keep their values. */
 PETSC_EXTERN PetscErrorCode EqmSurfaceToSolid(EqmSurface surface, PetscInt width, const PetscReal *slab,
                                               PetscReal *local);
-/* The other way, from all local vertices of the solid, ghosts up to date. Collective. */
+/* EqmSurfaceFromSolid - carry values from the solid's boundary vertices to the surface's.
+
+   Collective. local - `width` reals per local vertex of the solid, ghosts up to date; slab - `width` reals per vertex
+   of the slab of surface->soup. */
 PETSC_EXTERN PetscErrorCode EqmSurfaceFromSolid(EqmSurface surface, PetscInt width, const PetscReal *local,
                                                 PetscReal *slab);
 
@@ -110,16 +141,26 @@ struct _p_EqmDouble {
   PetscSF original, twin; /* roots: the vertices of the soup's slab; leaves: the surface's owned vertices */
 };
 
-/* The double covering of a mesh of triangles (004 section 2.2). Errors: EQM_ERR_USAGE (a solid, a closed surface).
-   Collective. */
+/* EqmDoubleCreate - the double covering of a surface (004 section 2.2).
+
+   Collective. surface - a mesh of triangles with a boundary. The covering's vertices are the surface's in input order,
+   then the mirror images of the interior ones; its triangles are the surface's in input order, then their mirror
+   images, turned over. Mirror images have the positions of the originals, so that lengths and angles are the same on
+   both sides. An edge inside the surface that joins two boundary vertices appears twice. A density is not carried over.
+   covering - to be freed with EqmDoubleDestroy. Errors: EQM_ERR_USAGE (a solid, a closed surface). */
 PETSC_EXTERN PetscErrorCode EqmDoubleCreate(EqmMesh surface, EqmDouble *covering);
+/* EqmDoubleDestroy - free a double covering. Collective; NULL is fine. */
 PETSC_EXTERN PetscErrorCode EqmDoubleDestroy(EqmDouble *covering);
-/* Put `width` reals per owned vertex of the surface, one for it and one for its twin, on the covering's slab; boundary
-   vertices, which are their own twins, get the first. Collective. */
+/* EqmDoubleFromHalves - set values of the covering from values of the surface and of its mirror image.
+
+   Collective. original, twin - `width` reals per owned vertex of the surface; slab - `width` reals per vertex of the
+   slab of covering->soup; boundary vertices, which both halves share, get `original`. */
 PETSC_EXTERN PetscErrorCode EqmDoubleFromHalves(EqmDouble covering, PetscInt width, const PetscReal *original,
                                                 const PetscReal *twin, PetscReal *slab);
-/* Carry `width` reals per vertex of the covering's slab to the surface's owned vertices: those of the original half.
-   Collective. */
+/* EqmDoubleToOriginal - values of the covering's original half at the surface's vertices.
+
+   Collective. slab - `width` reals per vertex of the slab of covering->soup; owned - `width` reals per owned vertex of
+   the surface. */
 PETSC_EXTERN PetscErrorCode EqmDoubleToOriginal(EqmDouble covering, PetscInt width, const PetscReal *slab,
                                                 PetscReal *owned);
 

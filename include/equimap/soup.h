@@ -36,48 +36,81 @@ struct _p_EqmSoup {
   PetscInt64 checksum;           /* CRC-32 of vertices and cells in input order, rank-independent */
 };
 
-/* Deal a mesh that rank 0 holds (NULL elsewhere) to all ranks; the arrays of `serial` are taken over and freed.
-   Collective. */
+/* EqmSoupCreateFromRoot - distribute a mesh that rank 0 holds to all ranks, in balanced contiguous slabs.
+
+   Collective. serial - on rank 0 the mesh, whose arrays are taken over and are freed or used; ignored on other ranks
+   (may be NULL there). file - where it came from, for messages; may be NULL. soup - to be freed with EqmSoupDestroy.
+   Errors: those of EqmSoupCreateFromSlabs. */
 PETSC_EXTERN PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const char *file,
                                                   EqmSoup *soup);
-/* Wrap slabs that every rank already holds (a parallel reader's); arrays are taken over. Slabs are contiguous in rank
-   order. Collective. */
+/* EqmSoupCreateFromSlabs - a soup from slabs that the ranks already hold, as a parallel reader does.
+
+   Collective. The slabs are contiguous in rank order. cell_size - 3 or 4; vertices - 3 * num_local_vertices; cells -
+   cell_size * num_local_cells global vertex numbers; both PetscMalloc'ed (or NULL where empty) and taken over, also
+   after a failure. soup - to be freed with EqmSoupDestroy. Errors: EQM_ERR_IO (more vertices or cells than PetscInt can
+   count). */
 PETSC_EXTERN PetscErrorCode EqmSoupCreateFromSlabs(MPI_Comm comm, PetscInt cell_size, PetscInt num_local_vertices,
                                                    PetscReal *vertices, PetscInt num_local_cells, PetscInt *cells,
                                                    const char *file, EqmSoup *soup);
-/* Gather on rank 0 (for formats that one rank must write); elsewhere `serial` is empty. Collective. */
+/* EqmSoupGather - the whole mesh on rank 0, for formats that one rank must write.
+
+   Collective. serial - filled on rank 0, empty elsewhere; to be freed with EqmSerialMeshReset. */
 PETSC_EXTERN PetscErrorCode EqmSoupGather(EqmSoup soup, EqmSerialMesh *serial);
-/* A soup of its own with the same mesh, slabs and density. Collective. */
+/* EqmSoupCopy - a copy with arrays of its own: mesh, slabs, density, edge lengths, file name. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy);
+/* EqmSoupDestroy - free a soup. Collective; NULL is fine. */
 PETSC_EXTERN PetscErrorCode EqmSoupDestroy(EqmSoup *soup);
+/* EqmSerialMeshReset - free the arrays of a serial mesh and make it empty. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmSerialMeshReset(EqmSerialMesh *serial);
 
-/* Read a mesh file, its format by content and suffix. Errors: EQM_ERR_IO (missing, unreadable, not a mesh, truncated;
-   the message names file and line or byte), EQM_ERR_MESH (well-formed, but no triangles or tetrahedra). Collective. */
+/* EqmSoupRead - read a mesh file, its format known by content and suffix.
+
+   Collective. soup - to be freed with EqmSoupDestroy. Errors: EQM_ERR_IO (missing, unreadable, not a mesh, truncated;
+   the message names file and line or byte), EQM_ERR_MESH (well-formed, but no triangles or tetrahedra). */
 PETSC_EXTERN PetscErrorCode EqmSoupRead(MPI_Comm comm, const char *file, EqmSoup *soup);
-/* Write a mesh, the format by suffix. Never leaves a half-written file. Errors: EQM_ERR_USAGE (unknown suffix),
-   EQM_ERR_IO. Collective. */
+/* EqmSoupWrite - write a mesh, the format by suffix; the file appears whole or not at all.
+
+   Collective. Errors: EQM_ERR_USAGE (unknown suffix), EQM_ERR_IO (cannot be written; a file of that name survives). */
 PETSC_EXTERN PetscErrorCode EqmSoupWrite(EqmSoup soup, const char *file);
-/* Read one positive number per cell: CSV with a header line (last column), or /cell/density of an HDF5 file. Fills
-   soup->density. Errors: EQM_ERR_IO, EQM_ERR_MESH (wrong count, not positive). Collective. */
+/* EqmSoupReadDensity - read one positive number per cell into soup->density.
+
+   Collective. file - CSV with a header line, of which the last column is read, or /cell/density of an HDF5 file.
+   Errors: EQM_ERR_IO (unreadable), EQM_ERR_MESH (wrong count, not positive). */
 PETSC_EXTERN PetscErrorCode EqmSoupReadDensity(EqmSoup soup, const char *file);
 
-/* Move every vertex of a surface along its normal by sigma, a length in the mesh's own units, times a random number of
-   the standard normal distribution that depends on seed and input vertex number alone (001 section 6.5). The checksum
-   becomes that of the noisy mesh. Errors: EQM_ERR_USAGE (sigma negative, not a surface). Collective. */
+/* EqmSoupAddNoise - move every vertex of a surface along its normal by a random length, for studies of stability (001
+   section 6.5).
+
+   Collective. sigma - standard deviation of the length, in the mesh's own units, not negative; 0 changes nothing. seed
+   - another seed, other numbers; they depend on seed and input vertex number alone: the same bits on any number of
+   ranks. The normal is the mean of those around the vertex, weighted by area; a vertex without one stays. The checksum
+   becomes that of the noisy mesh. Errors: EQM_ERR_USAGE (sigma negative or not finite, not a surface). */
 PETSC_EXTERN PetscErrorCode EqmSoupAddNoise(EqmSoup soup, PetscReal sigma, PetscInt seed);
 
-/* Test shapes of about n vertices; `shape` is one of the names that EqmGenerateShapes lists. Collective. */
+/* EqmSoupGenerate - a test surface or solid of about `n` vertices.
+
+   Collective. shape - one of the names that EqmGenerateShapes gives; seed - of irregularities and bumps. The result
+   does not depend on the number of ranks. soup - to be freed with EqmSoupDestroy. Errors: EQM_ERR_USAGE (unknown shape,
+   n out of range). */
 PETSC_EXTERN PetscErrorCode EqmSoupGenerate(MPI_Comm comm, const char *shape, PetscInt n, PetscInt seed, EqmSoup *soup);
-/* Names and descriptions of those shapes; the arrays are the caller's to PetscFree. Not collective. */
+/* EqmGenerateShapes - names and one-line descriptions of those shapes, `n` of each.
+
+   Not collective. The arrays are the caller's to PetscFree, the strings are constant; any output may be NULL. */
 PETSC_EXTERN PetscErrorCode EqmGenerateShapes(const char *const **names, const char *const **descriptions, int *n);
-/* Split every triangle into four (every tetrahedron into eight) `times` times. Collective. */
+/* EqmSoupRefine - split every triangle into four, every tetrahedron into eight, `times` times.
+
+   Collective; the soup is replaced, the same on any number of ranks. New vertices, on the middles of the edges, follow
+   the old ones, which keep their numbers; children stand where their parents stood and inherit their density. Errors:
+   EQM_ERR_MESH (a cell that names a vertex twice or one that does not exist), EQM_ERR_USAGE (more cells than PetscInt
+   can count). */
 PETSC_EXTERN PetscErrorCode EqmSoupRefine(EqmSoup *soup, PetscInt times);
 
-/* The intrinsic Delaunay triangulation of a surface: the same vertices and the same metric, as many cells, edges
-   flipped until no cotangent weight is negative. Edges are then known by edge_length alone, and two of them may join
-   the same vertices. Cell densities are dropped. `flips`: how many edges were flipped. Errors: none of its own.
-   Collective. */
+/* EqmSoupFlip - the intrinsic Delaunay triangulation of a surface: edges flipped until no cotangent weight is negative
+   (Bobenko and Springborn 2007).
+
+   Collective. The same vertices and the same metric, as many cells. Edges are then known by edge_length alone, and two
+   of them may join the same vertices. Cell densities are dropped. flipped - to be freed with EqmSoupDestroy; flips -
+   how many edges were flipped. */
 PETSC_EXTERN PetscErrorCode EqmSoupFlip(EqmSoup soup, EqmSoup *flipped, PetscInt64 *flips);
 
 /* What the diagnosis found. `count` findings of a kind, the first few in input numbering. */
@@ -131,20 +164,33 @@ typedef struct {
   EqmTopology topology;
 } EqmDiagnosis;
 
-/* Look at a mesh: everything that EqmDiagnosis holds. Never fails for what the mesh is like. Collective. */
+/* EqmSoupDiagnose - what a mesh is, and what is wrong with it where.
+
+   Collective; `diagnosis` is the same on every rank and for every number of ranks. Cells that name a vertex twice or
+   one that does not exist, and later duplicates of a cell, are counted and then ignored. No rank holds more than its
+   slab and what touches it. A mesh of any kind is no error. */
 PETSC_EXTERN PetscErrorCode EqmSoupDiagnose(EqmSoup soup, EqmDiagnosis *diagnosis);
-/* Say what is wrong with the mesh for a target ("disk", "square", "sphere", "ball", "conformal", or NULL: any): one
-   line a finding, with what, where, how many and what to do. `fatal` tells whether a map is out of the question, `text`
-   is written on every rank. Not collective. */
+/* EqmDiagnosisDescribe - what a diagnosis means for a target, in words.
+
+   Not collective; the same on every rank. target - a command's name ("disk", "square", "sphere", "ball", "conformal"),
+   or NULL for any of them. fatal - no map to the target is possible. text - of `length` bytes, truncated if that is not
+   enough: a line per finding (what, where, how many, what to do), the fatal ones first, without a newline at the end.
+   Errors: PETSC_ERR_ARG_OUTOFRANGE (no such target). */
 PETSC_EXTERN PetscErrorCode EqmDiagnosisDescribe(const EqmDiagnosis *diagnosis, const char *target, PetscBool *fatal,
                                                  char *text, size_t length);
-/* What was mended. */
+/* What EqmSoupRepair has done, counted over all ranks. */
 typedef struct {
   PetscInt64 duplicate_cells_removed, degenerate_cells_removed, cells_flipped, cells_split, vertices_added,
       vertices_unreferenced;
 } EqmRepair;
-/* Mend what is safe to mend; the soup is replaced. Added vertices follow the input's, kept ones keep their numbers.
-   `parent` (of the new slab of cells, input cell number of each cell) is allocated. Collective. */
+/* EqmSoupRepair - repair what can be repaired without a choice.
+
+   Collective; the soup is replaced, the same on any number of ranks. Removed: later duplicates of cells, and cells that
+   repeat a vertex. Turned: the triangles that disagree with most of their piece, and all tetrahedra of negative volume.
+   Split at their middle: interior edges between two boundary vertices, with all cells around them; at its centre: a
+   cell without an interior vertex that this leaves. Added vertices follow the old ones, which keep their numbers, in
+   use or not; children stand where their parent stood and inherit its density. parent - allocated (PetscFree it): per
+   cell of the new slab the input number of the cell it comes from. */
 PETSC_EXTERN PetscErrorCode EqmSoupRepair(EqmSoup *soup, EqmRepair *repair, PetscInt **parent);
 
 #endif

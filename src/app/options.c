@@ -55,7 +55,7 @@ PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject)
   PetscCall(PetscOptionsInt("-threads",
                             "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
                             threads, &threads, NULL));
-  PetscCall(EqmMeshAskOptions(PetscOptionsObject));
+  PetscCall(EqmMeshHelpOptions(PetscOptionsObject));
   PetscFunctionReturn(0);
 }
 

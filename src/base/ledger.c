@@ -1,4 +1,4 @@
-/* The run's book-keeping: seconds per phase and per kind of work, counted work, peak memory. */
+/* Clocks and counters of a run: seconds per phase and per kind of work, counted work, peak memory. */
 #include <equimap/base.h>
 #include <sys/resource.h>
 
@@ -36,7 +36,6 @@ static PetscErrorCode RegisterLogging(EqmLedger ledger)
   PetscFunctionReturn(0);
 }
 
-/* Open a ledger; its clock starts now. Collective. */
 PetscErrorCode EqmLedgerCreate(MPI_Comm comm, EqmLedger *out)
 {
   EqmLedger ledger;
@@ -50,7 +49,6 @@ PetscErrorCode EqmLedgerCreate(MPI_Comm comm, EqmLedger *out)
   PetscFunctionReturn(0);
 }
 
-/* Collective. */
 PetscErrorCode EqmLedgerDestroy(EqmLedger *ledger)
 {
   PetscFunctionBegin;
@@ -58,7 +56,6 @@ PetscErrorCode EqmLedgerDestroy(EqmLedger *ledger)
   PetscFunctionReturn(0);
 }
 
-/* A phase begins; phases do not nest. Collective. */
 PetscErrorCode EqmPhaseBegin(EqmLedger ledger, EqmPhase phase)
 {
   PetscFunctionBegin;
@@ -67,7 +64,6 @@ PetscErrorCode EqmPhaseBegin(EqmLedger ledger, EqmPhase phase)
   PetscFunctionReturn(0);
 }
 
-/* A phase ends. Collective. */
 PetscErrorCode EqmPhaseEnd(EqmLedger ledger, EqmPhase phase)
 {
   PetscLogDouble now;
@@ -79,7 +75,6 @@ PetscErrorCode EqmPhaseEnd(EqmLedger ledger, EqmPhase phase)
   PetscFunctionReturn(0);
 }
 
-/* Work of a kind begins; kinds do not nest in themselves. Not collective. */
 PetscErrorCode EqmEventBegin(EqmLedger ledger, EqmEvent event)
 {
   PetscFunctionBegin;
@@ -88,7 +83,6 @@ PetscErrorCode EqmEventBegin(EqmLedger ledger, EqmEvent event)
   PetscFunctionReturn(0);
 }
 
-/* Work of a kind ends. Not collective. */
 PetscErrorCode EqmEventEnd(EqmLedger ledger, EqmEvent event)
 {
   PetscLogDouble now;
@@ -100,7 +94,6 @@ PetscErrorCode EqmEventEnd(EqmLedger ledger, EqmEvent event)
   PetscFunctionReturn(0);
 }
 
-/* The counters, to read and to add to. Not collective. */
 PetscErrorCode EqmLedgerGetWork(EqmLedger ledger, EqmWork **work)
 {
   PetscFunctionBegin;
@@ -108,9 +101,7 @@ PetscErrorCode EqmLedgerGetWork(EqmLedger ledger, EqmWork **work)
   PetscFunctionReturn(0);
 }
 
-/* Seconds so far: per phase, per kind of work, in all. NULL for what is not wanted. Phases and the total are rank 0's,
-   so that they add up (phases are collective: the ranks differ by how long they wait for each other); of the kinds of
-   work it is the largest over the ranks. Collective. */
+/* Phases are collective: the ranks differ by how long they wait for each other. */
 PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PHASES], PetscReal events[EQM_NUM_EVENTS],
                                    PetscReal *total)
 {
@@ -131,8 +122,6 @@ PetscErrorCode EqmLedgerGetSeconds(EqmLedger ledger, PetscReal phases[EQM_NUM_PH
   PetscFunctionReturn(0);
 }
 
-/* The run continues others, which took so long: clocks go on from there. May be called again when more is known of
-   them. Not collective. */
 PetscErrorCode EqmLedgerContinue(EqmLedger ledger, const PetscReal phases[EQM_NUM_PHASES],
                                  const PetscReal events[EQM_NUM_EVENTS], PetscReal total)
 {
@@ -146,7 +135,6 @@ PetscErrorCode EqmLedgerContinue(EqmLedger ledger, const PetscReal phases[EQM_NU
   PetscFunctionReturn(0);
 }
 
-/* Seconds of the runs that this one continues. Not collective. */
 PetscErrorCode EqmLedgerGetEarlier(EqmLedger ledger, PetscReal *seconds)
 {
   PetscFunctionBegin;
@@ -154,7 +142,6 @@ PetscErrorCode EqmLedgerGetEarlier(EqmLedger ledger, PetscReal *seconds)
   PetscFunctionReturn(0);
 }
 
-/* Peak resident memory in bytes: of the largest rank, and summed over the ranks. Collective. */
 PetscErrorCode EqmGetPeakMemory(MPI_Comm comm, PetscInt64 *max_per_rank, PetscInt64 *total)
 {
   struct rusage usage;

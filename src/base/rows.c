@@ -78,8 +78,8 @@ PetscErrorCode EqmFetchSlab(MPI_Comm comm, PetscInt count, PetscInt num, PetscIn
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmLeaveRows(MPI_Comm comm, PetscInt count, PetscInt num, const PetscInt *numbers, MPI_Datatype unit,
-                            PetscInt width, const void *rows, void *slab)
+PetscErrorCode EqmPutRows(MPI_Comm comm, PetscInt count, PetscInt num, const PetscInt *numbers, MPI_Datatype unit,
+                          PetscInt width, const void *rows, void *slab)
 {
   PetscSF sf;
 

@@ -1,4 +1,4 @@
-/* Rows of an array that is dealt to the ranks in contiguous slabs, asked for and left by their numbers. */
+/* Rows of an array that is dealt to the ranks in contiguous slabs, fetched and put by their numbers. */
 #ifndef EQM_ROWS_H
 #define EQM_ROWS_H
 
@@ -10,11 +10,11 @@ PETSC_INTERN PetscErrorCode EqmFetchRows(MPI_Comm comm, PetscInt count, PetscInt
 /* The same for the `num` rows from `start` on. Collective. */
 PETSC_INTERN PetscErrorCode EqmFetchSlab(MPI_Comm comm, PetscInt count, PetscInt num, PetscInt start, MPI_Datatype unit,
                                          PetscInt width, const void *slab, void *rows);
-/* The other way. Rows that nobody leaves keep what they hold; no two ranks may leave the same one. Collective. */
-PETSC_INTERN PetscErrorCode EqmLeaveRows(MPI_Comm comm, PetscInt count, PetscInt num, const PetscInt *numbers,
-                                         MPI_Datatype unit, PetscInt width, const void *rows, void *slab);
+/* From rows to slabs. Rows that no rank puts keep their values; no two ranks may put the same one. Collective. */
+PETSC_INTERN PetscErrorCode EqmPutRows(MPI_Comm comm, PetscInt count, PetscInt num, const PetscInt *numbers,
+                                       MPI_Datatype unit, PetscInt width, const void *rows, void *slab);
 
-/* ---- for ways that are gone more than once */
+/* ---- for exchanges that are repeated */
 /* The star forest from slabs, its roots, to rows by number, its leaves. Collective. */
 PETSC_INTERN PetscErrorCode EqmRowsCreateSF(MPI_Comm comm, PetscInt count, PetscInt num, const PetscInt *numbers,
                                             PetscSF *sf);

@@ -1,4 +1,4 @@
-/* Status codes, the error handler of the house, agreement on failures. */
+/* Status codes, the error handler, agreement on failures. */
 #include <equimap/base.h>
 #include <signal.h>
 #include <string.h>
@@ -7,19 +7,16 @@
 #error "EQM_VERSION comes from the build system"
 #endif
 
-/* The program's version, "major.minor.patch". Not collective. */
 const char *EqmVersion(void)
 {
   return EQM_VERSION;
 }
 
-/* The git commit that the library was built from, or "unknown". Not collective. */
 const char *EqmCommit(void)
 {
   return EQM_COMMIT;
 }
 
-/* The name of a status as summaries and result files carry it. Not collective. */
 const char *EqmStatusName(EqmStatus status)
 {
   switch (status) {
@@ -45,7 +42,6 @@ const char *EqmStatusName(EqmStatus status)
   return "unknown";
 }
 
-/* The status, and so the exit code, behind an error code. Not collective. */
 EqmStatus EqmStatusOfError(PetscErrorCode error)
 {
   if (error == 0) return EQM_STATUS_CONVERGED;
@@ -56,7 +52,6 @@ EqmStatus EqmStatusOfError(PetscErrorCode error)
   return EQM_STATUS_INTERNAL;
 }
 
-/* One rank failed: all learn of it and fail alike, instead of one leaving and the others waiting. */
 PetscErrorCode EqmAgree(MPI_Comm comm, PetscErrorCode code, const char *message)
 {
   PetscMPIInt rank, size, failed;
@@ -98,8 +93,6 @@ static PetscErrorCode HandleError(MPI_Comm comm, int line, const char *function,
   return code;
 }
 
-/* Start PETSc and the house's error handler. A program that has its own PETSc set-up need not call this: without the
-   handler, errors come back with PETSc's usual traces. Collective on MPI_COMM_WORLD. */
 PetscErrorCode EqmInitialize(int *argc, char ***argv)
 {
   PetscFunctionBegin;
@@ -109,7 +102,6 @@ PetscErrorCode EqmInitialize(int *argc, char ***argv)
   PetscFunctionReturn(0);
 }
 
-/* End what EqmInitialize began. Collective on MPI_COMM_WORLD. */
 PetscErrorCode EqmFinalize(void)
 {
   PetscFunctionBegin;

@@ -91,10 +91,6 @@ static PetscErrorCode Deal(MPI_Comm comm, PetscInt total, MPI_Datatype number, P
   PetscFunctionReturn(0);
 }
 
-/* EqmSoupCreateFromRoot - deal a mesh that rank 0 holds to all ranks, in balanced contiguous slabs.
-
-   Collective. serial - on rank 0 the mesh, whose arrays are taken over and are gone afterwards; not looked at
-   elsewhere. */
 PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const char *file, EqmSoup *soup)
 {
   EqmSerialMesh mesh = {0};
@@ -134,9 +130,6 @@ static PetscErrorCode GivenStarts(MPI_Comm comm, PetscInt slab_end, PetscInt **s
   PetscFunctionReturn(0);
 }
 
-/* EqmSoupGather - the whole mesh on rank 0, for formats that one rank must write.
-
-   Collective. serial - filled on rank 0, empty elsewhere; EqmSerialMeshReset frees it. */
 PetscErrorCode EqmSoupGather(EqmSoup soup, EqmSerialMesh *serial)
 {
   const size_t width = (size_t)soup->cell_size;

@@ -249,10 +249,6 @@ static PetscErrorCode AppendGoodNews(const EqmDiagnosis *diagnosis, const char *
   PetscFunctionReturn(0);
 }
 
-/* Say what a diagnosis means for a target, by its name in the table of targets, or NULL for any of them.
-   `text` (of `length` bytes, cut short if that is not enough) gets a line per finding, the fatal ones first, without a
-   newline at the end; or good news and warnings. `fatal` tells whether the target's map is out of the question. Not
-   collective; gives the same on every rank. Errors: PETSC_ERR_ARG_OUTOFRANGE (no such target). */
 PetscErrorCode EqmDiagnosisDescribe(const EqmDiagnosis *diagnosis, const char *target, PetscBool *fatal, char *text,
                                     size_t length)
 {

@@ -216,10 +216,6 @@ static void Conclude(const EqmSoup soup, const Counts *counts, EqmDiagnosis *dia
   }
 }
 
-/* Look at a mesh: what it is, what is wrong with it, where. Cells with a bad index or a repeated vertex, and later
-   twins of a cell, are counted and then left aside. The findings do not depend on the number of ranks; no rank holds
-   more than its slab and what touches it. Never fails for what the mesh is like. Collective on the soup's communicator.
- */
 PetscErrorCode EqmSoupDiagnose(EqmSoup soup, EqmDiagnosis *diagnosis)
 {
   EqmVicinity vicinity;

@@ -1,4 +1,4 @@
-/* Connected components and orientation across ranks: disjoint sets on each rank, labels that travel between them. */
+/* Connected components and orientation across ranks: disjoint sets on each rank, labels exchanged between them. */
 #include "mesh/diagnose.h"
 
 /* Every item a set of its own. Free with EqmForestReset. Not collective. */
@@ -49,7 +49,7 @@ PetscBool EqmForestJoin(EqmForest *forest, PetscInt a, PetscInt b, PetscBool tur
   return PETSC_TRUE;
 }
 
-/* A set's key is 2 * (lowest item number known) + (its root is turned against that item). Keys are reals because
+/* A set's key is 2 * (lowest item number seen) + (its root is turned against that item). Keys are reals because
    PetscSF takes the minimum of those in every build, and they hold whole numbers to 2^53. */
 static PetscReal TurnKey(PetscReal key, unsigned char turned)
 {
@@ -58,44 +58,44 @@ static PetscReal TurnKey(PetscReal key, unsigned char turned)
   return turned ? 4.0 * label + 1.0 - key : key;
 }
 
-/* Take a key heard by an item, if it is lower than its set's; tells whether it is. */
-static PetscBool TakeKey(EqmForest *forest, PetscInt item, PetscReal heard, PetscReal *set_key)
+/* Give a set the key that one of its items has received, if that is lower; returns whether it is. */
+static PetscBool LowerKey(EqmForest *forest, PetscInt item, PetscReal received, PetscReal *set_key)
 {
   unsigned char turned;
   const PetscInt root = Root(forest, item, &turned);
 
-  if (TurnKey(heard, turned) >= set_key[root]) return PETSC_FALSE;
-  set_key[root] = TurnKey(heard, turned);
+  if (TurnKey(received, turned) >= set_key[root]) return PETSC_FALSE;
+  set_key[root] = TurnKey(received, turned);
   return PETSC_TRUE;
 }
 
 static PetscErrorCode ExchangeKeys(MPI_Comm comm, PetscSF sf, EqmForest *forest, PetscReal *set_key, PetscBool *changed)
 {
-  PetscReal *own, *heard[2];
+  PetscReal *own, *received[2];
   PetscBool here = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(forest->num_items, &own, forest->num_items, &heard[0], forest->num_items, &heard[1]));
+  PetscCall(PetscMalloc3(forest->num_items, &own, forest->num_items, &received[0], forest->num_items, &received[1]));
   for (PetscInt i = 0; i < forest->num_items; i++) {
     unsigned char turned;
     const PetscInt root = Root(forest, i, &turned);
 
-    own[i] = heard[0][i] = heard[1][i] = TurnKey(set_key[root], turned);
+    own[i] = received[0][i] = received[1][i] = TurnKey(set_key[root], turned);
   }
-  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, own, heard[0], MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, own, heard[0], MPI_REPLACE));
-  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, own, heard[1], MPI_MIN));
-  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, own, heard[1], MPI_MIN));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, own, received[0], MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, own, received[0], MPI_REPLACE));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, own, received[1], MPI_MIN));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, own, received[1], MPI_MIN));
   for (PetscInt i = 0; i < forest->num_items; i++) {
-    if (TakeKey(forest, i, heard[0][i], set_key)) here = PETSC_TRUE;
-    if (TakeKey(forest, i, heard[1][i], set_key)) here = PETSC_TRUE;
+    if (LowerKey(forest, i, received[0][i], set_key)) here = PETSC_TRUE;
+    if (LowerKey(forest, i, received[1][i], set_key)) here = PETSC_TRUE;
   }
-  PetscCall(PetscFree3(own, heard[0], heard[1]));
+  PetscCall(PetscFree3(own, received[0], received[1]));
   PetscCallMPI(MPI_Allreduce(&here, changed, 1, MPIU_BOOL, MPI_LOR, comm));
   PetscFunctionReturn(0);
 }
 
-/* Where the key of an item can be asked for by the item's number. */
+/* The keys of items by the items' numbers, distributed. */
 typedef struct {
   PetscLayout layout; /* of the numbers */
   PetscSF entries;    /* roots: the numbers; leaves: the items, each on the one rank where it is no copy */
@@ -139,19 +139,19 @@ static PetscErrorCode DirectoryReset(Directory *directory)
   PetscFunctionReturn(0);
 }
 
-/* A set that was named after an item far away (`before`) tells that item what it has learnt since, and hears what the
-   item has learnt. Like that the names merge as a tree does, in a few rounds, where going from neighbour to neighbour
-   alone would take as many as the mesh is wide. */
-static PetscErrorCode ShareWithNamesakes(MPI_Comm comm, Directory *directory, EqmForest *forest, const PetscInt *number,
-                                         const PetscReal *before, PetscReal *set_key)
+/* A set whose label (`before`) is the number of an item elsewhere sends its lower key to that item and receives the
+   item's. So labels merge along a tree, in a few rounds; from neighbour to neighbour alone it would take as many rounds
+   as the mesh has ranks in a row. */
+static PetscErrorCode PropagateLabels(MPI_Comm comm, Directory *directory, EqmForest *forest, const PetscInt *number,
+                                      const PetscReal *before, PetscReal *set_key)
 {
   const PetscInt n = forest->num_items;
   PetscInt num_sets = 0, *root, *label;
-  PetscReal *key, *word;
-  PetscSF namesakes;
+  PetscReal *key, *message;
+  PetscSF label_roots;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(n, &key, n, &word, n, &root, n, &label));
+  PetscCall(PetscMalloc4(n, &key, n, &message, n, &root, n, &label));
   for (PetscInt i = 0; i < n; i++) {
     unsigned char turned;
     const PetscInt top = Root(forest, i, &turned);
@@ -160,31 +160,31 @@ static PetscErrorCode ShareWithNamesakes(MPI_Comm comm, Directory *directory, Eq
     if (top != i || before[i] == 2.0 * (PetscReal)number[i]) continue;
     root[num_sets] = i;
     label[num_sets] = (PetscInt)PetscFloorReal(before[i] / 2.0);
-    word[num_sets] = TurnKey(set_key[i], before[i] > 2.0 * (PetscReal)label[num_sets]);
+    message[num_sets] = TurnKey(set_key[i], before[i] > 2.0 * (PetscReal)label[num_sets]);
     num_sets++;
   }
   PetscCall(PetscSFReduceBegin(directory->entries, MPIU_REAL, key, directory->key, MPI_REPLACE));
   PetscCall(PetscSFReduceEnd(directory->entries, MPIU_REAL, key, directory->key, MPI_REPLACE));
-  PetscCall(PetscSFCreate(comm, &namesakes));
-  PetscCall(PetscSFSetGraphLayout(namesakes, directory->layout, num_sets, NULL, PETSC_OWN_POINTER, label));
-  PetscCall(PetscSFReduceBegin(namesakes, MPIU_REAL, word, directory->key, MPI_MIN));
-  PetscCall(PetscSFReduceEnd(namesakes, MPIU_REAL, word, directory->key, MPI_MIN));
-  PetscCall(PetscSFBcastBegin(namesakes, MPIU_REAL, directory->key, word, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(namesakes, MPIU_REAL, directory->key, word, MPI_REPLACE));
+  PetscCall(PetscSFCreate(comm, &label_roots));
+  PetscCall(PetscSFSetGraphLayout(label_roots, directory->layout, num_sets, NULL, PETSC_OWN_POINTER, label));
+  PetscCall(PetscSFReduceBegin(label_roots, MPIU_REAL, message, directory->key, MPI_MIN));
+  PetscCall(PetscSFReduceEnd(label_roots, MPIU_REAL, message, directory->key, MPI_MIN));
+  PetscCall(PetscSFBcastBegin(label_roots, MPIU_REAL, directory->key, message, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(label_roots, MPIU_REAL, directory->key, message, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(directory->entries, MPIU_REAL, directory->key, key, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(directory->entries, MPIU_REAL, directory->key, key, MPI_REPLACE));
-  PetscCall(PetscSFDestroy(&namesakes));
+  PetscCall(PetscSFDestroy(&label_roots));
   for (PetscInt s = 0; s < num_sets; s++) {
-    (void)TakeKey(forest, root[s], TurnKey(word[s], before[root[s]] > 2.0 * (PetscReal)label[s]), set_key);
+    (void)LowerKey(forest, root[s], TurnKey(message[s], before[root[s]] > 2.0 * (PetscReal)label[s]), set_key);
   }
-  for (PetscInt i = 0; i < n; i++) (void)TakeKey(forest, i, key[i], set_key);
-  PetscCall(PetscFree4(key, word, root, label));
+  for (PetscInt i = 0; i < n; i++) (void)LowerKey(forest, i, key[i], set_key);
+  PetscCall(PetscFree4(key, message, root, label));
   PetscFunctionReturn(0);
 }
 
-/* Let the sets' keys travel between the ranks until nothing changes. */
-static PetscErrorCode SettleKeys(MPI_Comm comm, PetscSF sf, EqmForest *forest, const PetscInt *number,
-                                 PetscReal *set_key)
+/* Exchange the sets' keys between the ranks until none changes. */
+static PetscErrorCode ConvergeKeys(MPI_Comm comm, PetscSF sf, EqmForest *forest, const PetscInt *number,
+                                   PetscReal *set_key)
 {
   Directory directory;
   PetscReal *before;
@@ -196,7 +196,7 @@ static PetscErrorCode SettleKeys(MPI_Comm comm, PetscSF sf, EqmForest *forest, c
   while (changed) {
     PetscCall(PetscArraycpy(before, set_key, forest->num_items));
     PetscCall(ExchangeKeys(comm, sf, forest, set_key, &changed));
-    if (changed) PetscCall(ShareWithNamesakes(comm, &directory, forest, number, before, set_key));
+    if (changed) PetscCall(PropagateLabels(comm, &directory, forest, number, before, set_key));
   }
   PetscCall(PetscFree(before));
   PetscCall(DirectoryReset(&directory));
@@ -210,12 +210,12 @@ static PetscErrorCode SettleKeys(MPI_Comm comm, PetscSF sf, EqmForest *forest, c
 PetscErrorCode EqmForestLabel(MPI_Comm comm, PetscSF sf, EqmForest *forest, const PetscInt *number, PetscInt *label,
                               PetscBool *turned, PetscBool *conflict)
 {
-  PetscReal *set_key, *key, *heard;
+  PetscReal *set_key, *key, *received;
   PetscMPIInt size;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc3(forest->num_items, &set_key, forest->num_items, &key, forest->num_items, &heard));
+  PetscCall(PetscMalloc3(forest->num_items, &set_key, forest->num_items, &key, forest->num_items, &received));
   for (PetscInt i = 0; i < forest->num_items; i++) set_key[i] = PETSC_MAX_REAL;
   for (PetscInt i = 0; i < forest->num_items; i++) {
     unsigned char against;
@@ -223,20 +223,20 @@ PetscErrorCode EqmForestLabel(MPI_Comm comm, PetscSF sf, EqmForest *forest, cons
 
     set_key[root] = PetscMin(set_key[root], 2.0 * (PetscReal)number[i] + against);
   }
-  if (size > 1) PetscCall(SettleKeys(comm, sf, forest, number, set_key));
+  if (size > 1) PetscCall(ConvergeKeys(comm, sf, forest, number, set_key));
   for (PetscInt i = 0; i < forest->num_items; i++) {
     unsigned char against;
     const PetscInt root = Root(forest, i, &against);
 
-    key[i] = heard[i] = TurnKey(set_key[root], against);
+    key[i] = received[i] = TurnKey(set_key[root], against);
     label[i] = (PetscInt)PetscFloorReal(key[i] / 2.0);
     if (turned) turned[i] = (PetscBool)(key[i] > 2.0 * (PetscReal)label[i]);
   }
   if (conflict && size > 1) {
-    PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, key, heard, MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, key, heard, MPI_REPLACE));
-    for (PetscInt i = 0; i < forest->num_items; i++) conflict[i] = (PetscBool)(conflict[i] || key[i] != heard[i]);
+    PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, key, received, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, key, received, MPI_REPLACE));
+    for (PetscInt i = 0; i < forest->num_items; i++) conflict[i] = (PetscBool)(conflict[i] || key[i] != received[i]);
   }
-  PetscCall(PetscFree3(set_key, key, heard));
+  PetscCall(PetscFree3(set_key, key, received));
   PetscFunctionReturn(0);
 }

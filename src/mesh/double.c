@@ -64,13 +64,6 @@ static PetscErrorCode CreateSF(EqmMesh surface, PetscLayout layout, PetscInt *nu
   PetscFunctionReturn(0);
 }
 
-/* EqmDoubleCreate - the double covering of a surface.
-
-   Collective. surface - a mesh of triangles with a boundary. The covering's vertices are the surface's in input order,
-   then the twins of the interior ones; its triangles are the surface's in input order, then their mirror images, turned
-   over. Twins stand where the originals do, so that lengths and angles are the same on both sides. Both are the same
-   for any number of ranks and dealt in contiguous slabs. An edge inside the surface that joins two boundary vertices
-   appears twice. A density is not carried over. Errors: EQM_ERR_USAGE if `surface` is a solid or closed. */
 PetscErrorCode EqmDoubleCreate(EqmMesh surface, EqmDouble *covering)
 {
   PetscInt *original, *twin, num_cells, *cells;
@@ -115,7 +108,6 @@ PetscErrorCode EqmDoubleToOriginal(EqmDouble covering, PetscInt width, const Pet
   PetscFunctionReturn(0);
 }
 
-/* EqmDoubleDestroy - free a double covering. Collective; NULL is fine. */
 PetscErrorCode EqmDoubleDestroy(EqmDouble *covering)
 {
   PetscFunctionBegin;

@@ -3,9 +3,9 @@
    become geodesics across the old triangles: they are known by their lengths alone, and two of them may join the same
    vertices.
 
-   Every triangle lives on the rank that has its cell, every edge is looked after by one rank. In a round, triangles
-   that have changed tell their edges; edges that are not Delaunay ask both their triangles; a triangle says yes to one;
-   edges with two yeses flip. */
+   Every triangle belongs to the rank that has its cell, every edge to one rank. In a round, triangles that have changed
+   are sent to their edges; edges that are not Delaunay request both their triangles; a triangle approves one request;
+   edges with two approvals flip. */
 #include "mesh/flip.h"
 #include "base/exchange.h"
 #include "geometry/simplex.h"
@@ -28,8 +28,8 @@ static PetscInt Mix(PetscInt edge)
   return (PetscInt)(((unsigned)edge * 2654435761u) >> 1);
 }
 
-/* Triangles that have changed tell their edges. */
-static PetscErrorCode TellEdges(EqmFlipper *f)
+/* Triangles that have changed are sent to the ranks of their edges. */
+static PetscErrorCode SendTrianglesToEdges(EqmFlipper *f)
 {
   PetscInt count = 0, num_received;
   PetscMPIInt *destination;
@@ -59,8 +59,8 @@ static PetscErrorCode TellEdges(EqmFlipper *f)
   PetscFunctionReturn(0);
 }
 
-/* Would a flip help, and is there something to flip? No edge from a vertex to itself is made. */
-static PetscBool WantsToFlip(const EqmFlipEdge *edge)
+/* Is the edge not Delaunay, and are both its triangles known? No edge from a vertex to itself is made. */
+static PetscBool IsFlippable(const EqmFlipEdge *edge)
 {
   const EqmFlipSide *const a = &edge->side[0], *const b = &edge->side[1];
   PetscReal cot[2];
@@ -72,25 +72,25 @@ static PetscBool WantsToFlip(const EqmFlipEdge *edge)
   return (PetscBool)(cot[0] + cot[1] < -1e-12 * (1. + PetscAbsReal(cot[0]) + PetscAbsReal(cot[1])));
 }
 
-/* Edges that want to flip ask both their triangles; a triangle gives itself to one of those that ask. */
-static PetscErrorCode AskTriangles(EqmFlipper *f, PetscInt64 *asking)
+/* Edges that are not Delaunay request both their triangles; a triangle chooses one of the requests. */
+static PetscErrorCode RequestFlips(EqmFlipper *f, PetscInt64 *requests)
 {
   PetscInt count = 0, num_received;
   PetscMPIInt *destination;
-  EqmEdgeName *claim, *received;
+  EqmEdgeId *claim, *received;
 
   PetscFunctionBegin;
-  *asking = 0;
+  *requests = 0;
   for (PetscInt e = 0; e < f->num_edges; e++) {
-    f->edge[e].consents = 0;
-    f->edge[e].dirty = (PetscBool)(f->edge[e].dirty && WantsToFlip(&f->edge[e]));
-    *asking += f->edge[e].dirty;
+    f->edge[e].approvals = 0;
+    f->edge[e].dirty = (PetscBool)(f->edge[e].dirty && IsFlippable(&f->edge[e]));
+    *requests += f->edge[e].dirty;
   }
-  PetscCall(PetscMalloc2(2 * (PetscInt)*asking, &claim, 2 * (PetscInt)*asking, &destination));
+  PetscCall(PetscMalloc2(2 * (PetscInt)*requests, &claim, 2 * (PetscInt)*requests, &destination));
   for (PetscInt e = 0; e < f->num_edges; e++) {
     for (PetscInt s = 0; s < 2 && f->edge[e].dirty; s++) {
       destination[count] = (PetscMPIInt)f->edge[e].side[s].rank;
-      claim[count++] = (EqmEdgeName){f->edge[e].side[s].triangle, s, f->size * e + f->rank};
+      claim[count++] = (EqmEdgeId){f->edge[e].side[s].triangle, s, f->size * e + f->rank};
     }
   }
   PetscCall(EqmExchangeBytes(f->comm, count, sizeof(*claim), destination, claim, &num_received, &received));
@@ -103,12 +103,12 @@ static PetscErrorCode AskTriangles(EqmFlipper *f, PetscInt64 *asking)
       *best = received[k].edge;
   }
   PetscCall(PetscFree(received));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, asking, 1, MPIU_INT64, MPI_SUM, f->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, requests, 1, MPIU_INT64, MPI_SUM, f->comm));
   PetscFunctionReturn(0);
 }
 
-/* The triangles' consents travel to the edges. */
-static PetscErrorCode CollectConsents(EqmFlipper *f)
+/* The triangles' choices are sent to the edges. */
+static PetscErrorCode CollectApprovals(EqmFlipper *f)
 {
   PetscInt count = 0, num_received, *edge, *received;
   PetscMPIInt *destination;
@@ -121,7 +121,7 @@ static PetscErrorCode CollectConsents(EqmFlipper *f)
     edge[count++] = f->claimed[t];
   }
   PetscCall(EqmExchangeBytes(f->comm, count, sizeof(*edge), destination, edge, &num_received, &received));
-  for (PetscInt k = 0; k < num_received; k++) f->edge[received[k] / f->size].consents++;
+  for (PetscInt k = 0; k < num_received; k++) f->edge[received[k] / f->size].approvals++;
   PetscCall(PetscFree(received));
   PetscCall(PetscFree2(edge, destination));
   PetscFunctionReturn(0);
@@ -148,7 +148,7 @@ static void Flip(const EqmFlipSide *a, const EqmFlipSide *b, EqmFlipTriangle *fi
                               {t->length[i1], diagonal, u->length[j2]}};
 }
 
-/* Edges with both consents flip, and tell their triangles what has become of them. */
+/* Edges with two approvals flip, and send their triangles the new shapes. */
 static PetscErrorCode FlipEdges(EqmFlipper *f)
 {
   PetscInt count = 0, num_received;
@@ -156,13 +156,13 @@ static PetscErrorCode FlipEdges(EqmFlipper *f)
   Update *update, *received;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < f->num_edges; e++) count += f->edge[e].consents == 2 ? 2 : 0;
+  for (PetscInt e = 0; e < f->num_edges; e++) count += f->edge[e].approvals == 2 ? 2 : 0;
   f->flips += count / 2;
   PetscCall(PetscMalloc2(count, &update, count, &destination));
   count = 0;
   for (PetscInt e = 0; e < f->num_edges; e++) {
     const EqmFlipSide *const side = f->edge[e].side;
-    if (f->edge[e].consents != 2) continue;
+    if (f->edge[e].approvals != 2) continue;
     for (PetscInt s = 0; s < 2; s++) {
       update[count + s].triangle = side[s].triangle;
       update[count + s].unused = 0;
@@ -182,7 +182,7 @@ static PetscErrorCode FlipEdges(EqmFlipper *f)
 }
 
 /* The soup with the triangles as they are now, and their lengths. */
-static PetscErrorCode TakeTriangles(const EqmFlipper *f, EqmSoup soup, EqmSoup *flipped)
+static PetscErrorCode MakeFlippedSoup(const EqmFlipper *f, EqmSoup soup, EqmSoup *flipped)
 {
   PetscFunctionBegin;
   PetscCall(EqmSoupCopy(soup, flipped));
@@ -198,21 +198,21 @@ static PetscErrorCode TakeTriangles(const EqmFlipper *f, EqmSoup soup, EqmSoup *
 PetscErrorCode EqmSoupFlip(EqmSoup soup, EqmSoup *flipped, PetscInt64 *flips)
 {
   EqmFlipper f = {.comm = soup->comm, .num_triangles = soup->cell_end - soup->cell_start};
-  PetscInt64 asking = 1;
+  PetscInt64 requests = 1;
 
   PetscFunctionBegin;
   PetscCheck(soup->cell_size == 3, soup->comm, PETSC_ERR_ARG_WRONG, "only edges of triangles are flipped");
   PetscCallMPI(MPI_Comm_rank(f.comm, &f.rank));
   PetscCallMPI(MPI_Comm_size(f.comm, &f.size));
   PetscCall(EqmFlipperMakeTriangles(soup, &f));
-  PetscCall(EqmFlipperNameEdges(&f));
-  while (asking > 0) { /* ends: every flip lowers the Dirichlet energies of all functions */
-    PetscCall(TellEdges(&f));
-    PetscCall(AskTriangles(&f, &asking));
-    PetscCall(CollectConsents(&f));
+  PetscCall(EqmFlipperNumberEdges(&f));
+  while (requests > 0) { /* ends: every flip lowers the Dirichlet energies of all functions */
+    PetscCall(SendTrianglesToEdges(&f));
+    PetscCall(RequestFlips(&f, &requests));
+    PetscCall(CollectApprovals(&f));
     PetscCall(FlipEdges(&f));
   }
-  PetscCall(TakeTriangles(&f, soup, flipped));
+  PetscCall(MakeFlippedSoup(&f, soup, flipped));
   PetscCall(MPIU_Allreduce(&f.flips, flips, 1, MPIU_INT64, MPI_SUM, f.comm));
   PetscCall(PetscFree3(f.triangle, f.changed, f.claimed));
   PetscCall(PetscFree(f.edge));

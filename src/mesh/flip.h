@@ -1,4 +1,4 @@
-/* Triangles and edges on their way to the intrinsic Delaunay triangulation; what happens to them is told in flip.c. */
+/* Triangles and edges while edges are flipped; the algorithm is described in flip.c. */
 #ifndef EQM_FLIP_H
 #define EQM_FLIP_H
 
@@ -10,7 +10,7 @@ typedef struct {
   PetscReal length[3];
 } EqmFlipTriangle;
 
-/* A triangle as one of its edges sees it; also the message that tells the edge. */
+/* A triangle as one of its edges sees it; also the message to the edge. */
 typedef struct {
   PetscInt edge, rank, triangle, corner;
   EqmFlipTriangle shape;
@@ -18,7 +18,7 @@ typedef struct {
 
 typedef struct {
   PetscBool known[2], dirty;
-  PetscInt consents;
+  PetscInt approvals;
   EqmFlipSide side[2]; /* where the edge runs from the lower to the higher vertex, and the other */
 } EqmFlipEdge;
 
@@ -28,17 +28,17 @@ typedef struct {
   PetscInt num_triangles, num_edges;
   EqmFlipTriangle *triangle;
   PetscBool *changed;
-  PetscInt *claimed; /* per triangle: the edge that it gives itself to in this round, or -1 */
+  PetscInt *claimed; /* per triangle: the edge whose request it approves in this round, or -1 */
   EqmFlipEdge *edge; /* edge number size * k + rank is at k */
   PetscInt64 flips;
 } EqmFlipper;
 
 typedef struct {
   PetscInt triangle, corner, edge;
-} EqmEdgeName; /* of an edge, for its triangle; as a claim: the edge asks the triangle */
+} EqmEdgeId; /* of an edge, for its triangle; as a request of the edge to the triangle */
 
-/* Lengths and names, before the first round (flip_begin.c). Collective. */
+/* Lengths and edge numbers, before the first round (flip_begin.c). Collective. */
 PETSC_INTERN PetscErrorCode EqmFlipperMakeTriangles(EqmSoup soup, EqmFlipper *flipper);
-PETSC_INTERN PetscErrorCode EqmFlipperNameEdges(EqmFlipper *flipper);
+PETSC_INTERN PetscErrorCode EqmFlipperNumberEdges(EqmFlipper *flipper);
 
 #endif

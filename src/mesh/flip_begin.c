@@ -38,14 +38,14 @@ static int CompareHalfEdges(const void *a, const void *b)
   return (s->high > t->high) - (s->high < t->high);
 }
 
-/* Give every edge a number, and let its triangles know. */
-PetscErrorCode EqmFlipperNameEdges(EqmFlipper *f)
+/* Number the edges, and enter the numbers into their triangles. */
+PetscErrorCode EqmFlipperNumberEdges(EqmFlipper *f)
 {
   const PetscInt n = 3 * f->num_triangles;
   PetscInt num_received, num_names;
   PetscMPIInt *destination;
   HalfEdge *half, *received;
-  EqmEdgeName *name, *names;
+  EqmEdgeId *name, *names;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(n, &half, n, &destination));
@@ -60,7 +60,7 @@ PetscErrorCode EqmFlipperNameEdges(EqmFlipper *f)
   PetscCall(PetscMalloc2(num_received, &name, num_received, &destination));
   for (PetscInt k = 0; k < num_received; k++) {
     if (k == 0 || CompareHalfEdges(&received[k], &received[k - 1])) f->num_edges++;
-    name[k] = (EqmEdgeName){received[k].triangle, received[k].corner, f->size * (f->num_edges - 1) + f->rank};
+    name[k] = (EqmEdgeId){received[k].triangle, received[k].corner, f->size * (f->num_edges - 1) + f->rank};
     destination[k] = (PetscMPIInt)received[k].rank;
   }
   PetscCall(PetscFree(received));

@@ -26,8 +26,6 @@ static const EqmShape shape_table[EQM_NUM_SHAPES] = {
     {"moebius", "Moebius band, not orientable (bad input)", &EqmLatticeMoebius, EqmPlaceMoebius},
 };
 
-/* Names and one-line descriptions of the shapes that EqmSoupGenerate makes; the arrays are PetscMalloc'ed and the
-   caller's to PetscFree, the strings are constant. Any of the outputs may be NULL. Not collective. */
 PetscErrorCode EqmGenerateShapes(const char *const **names, const char *const **descriptions, int *n)
 {
   const char **name = NULL, **description = NULL;
@@ -63,8 +61,6 @@ static PetscErrorCode FindShape(MPI_Comm comm, const char *name, const EqmShape 
   PetscFunctionReturn(0);
 }
 
-/* Make a test shape of about `n` vertices. Jitter, bumps and irregular connectivity come from `seed`; the result does
-   not depend on the number of ranks. Collective on `comm`. Errors: EQM_ERR_USAGE (unknown shape, n out of range). */
 PetscErrorCode EqmSoupGenerate(MPI_Comm comm, const char *shape_name, PetscInt n, PetscInt seed, EqmSoup *soup)
 {
   const PetscInt n_max = PETSC_MAX_INT / 8; /* tetrahedra: six per vertex, and headroom */

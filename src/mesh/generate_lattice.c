@@ -1,5 +1,5 @@
-/* Lattices of the test shapes: rectangles and their closed kin, a hexagon in rings, the subdivided icosahedron in rows.
-   Numbers run row by row. */
+/* Lattices of the test shapes: rectangles, open, closed or twisted, a hexagon in rings, the subdivided icosahedron in
+   rows. Numbers run row by row. */
 #include "mesh/generate.h"
 
 /* ---- rectangles: size[0] columns, size[1] rows of vertices ---- */
@@ -268,7 +268,7 @@ static void CellIcosahedron(const EqmLatticePlan *plan, PetscInt cell, PetscInt 
     vertices[1] = inside % 2 ? lower + next : lower + j;
     vertices[2] = upper + next;
   } else {
-    /* counted from the south pole, and seen from outside the turn is the other way */
+    /* counted from the south pole, and seen from outside the orientation is reversed */
     const PetscInt mirrored = 4 * cap - 1 - cell, row = RingOf(5, 0, mirrored) + 1;
     const PetscInt start[2] = {RowStart(f, 3 * f - row + 1), RowStart(f, 3 * f - row)};
     PetscInt swap;

@@ -253,7 +253,6 @@ PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *out)
   PetscFunctionReturn(0);
 }
 
-/* Collective. */
 PetscErrorCode EqmMeshDestroy(EqmMesh *mesh)
 {
   PetscFunctionBegin;

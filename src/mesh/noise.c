@@ -23,14 +23,6 @@ static PetscReal Gaussian(PetscInt seed, PetscInt vertex)
   return PetscSqrtReal(-2. * PetscLogReal(u)) * PetscCosReal(2. * PETSC_PI * turn);
 }
 
-/* EqmSoupAddNoise - move every vertex of a surface along its normal by sigma times a random number of the standard
-   normal distribution. Sigma is a length in the mesh's own units: a scanner's noise is, and so come out the energies
-   that 001 Tables 7 and 8 have for David Head.
-
-   Collective. The normal is the mean of the normals around the vertex, weighted by area; a vertex without one stays.
-   The numbers depend on seed and input vertex number alone: the same bits on any number of ranks. The checksum becomes
-   that of the noisy mesh. sigma - 0 or more; 0 changes nothing. Errors: EQM_ERR_USAGE (negative or not finite sigma;
-   not a surface). */
 PetscErrorCode EqmSoupAddNoise(EqmSoup soup, PetscReal sigma, PetscInt seed)
 {
   EqmVicinity vicinity;

@@ -30,8 +30,8 @@ PetscErrorCode EqmMeshVerticesFromInput(EqmMesh mesh, EqmSoup soup, PetscInt wid
 PetscErrorCode EqmMeshCellsToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *owned, PetscReal *slab)
 {
   PetscFunctionBegin;
-  PetscCall(EqmLeaveRows(soup->comm, soup->cell_end - soup->cell_start, mesh->num_owned_cells, mesh->cell_input,
-                         MPIU_REAL, width, owned, slab));
+  PetscCall(EqmPutRows(soup->comm, soup->cell_end - soup->cell_start, mesh->num_owned_cells, mesh->cell_input,
+                       MPIU_REAL, width, owned, slab));
   PetscFunctionReturn(0);
 }
 
@@ -66,7 +66,7 @@ static PetscErrorCode InputNumbers(EqmMesh mesh, PetscInt *input)
 }
 
 /* Count those vertices that are leaves on some rank in input order, which no distribution changes: even shares of the
-   input's numbers are ticked off, counted and asked again. leaf - local vertices, number - what they get. Collective.
+   input's numbers are marked, counted and read back. leaf - local vertices, number - what they get. Collective.
  */
 PetscErrorCode EqmMeshNumberInOrder(EqmMesh mesh, PetscInt num_leaves, const PetscInt *leaf, PetscInt *number)
 {

@@ -72,10 +72,7 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
 enum { PARTITION_METIS, PARTITION_SLAB, NUM_PARTITIONS };
 static const char *const partitions[NUM_PARTITIONS] = {"metis", "slab"};
 
-/* EqmMeshAskOptions - ask for the options of EqmMeshCreate, with help: -partition.
-
-   Collective, between PetscOptionsBegin and PetscOptionsEnd. */
-PetscErrorCode EqmMeshAskOptions(PetscOptionItems *PetscOptionsObject)
+PetscErrorCode EqmMeshHelpOptions(PetscOptionItems *PetscOptionsObject)
 {
   PetscInt kind = PARTITION_METIS;
 

@@ -108,10 +108,6 @@ static PetscErrorCode RefineOnce(EqmSoup *soup)
   PetscFunctionReturn(0);
 }
 
-/* Split every triangle into four, every tetrahedron into eight, `times` times; the soup is replaced. New vertices, on
-   the middle of the edges, follow the old ones, which keep their numbers; children stand where their parents stood and
-   inherit their density. The same on any number of ranks. Collective. Errors: EQM_ERR_MESH (a cell that names a vertex
-   twice or one that does not exist), EQM_ERR_USAGE (more cells than the build can count). */
 PetscErrorCode EqmSoupRefine(EqmSoup *soup, PetscInt times)
 {
   const PetscInt children = (*soup)->cell_size == 3 ? 4 : 8;

@@ -262,12 +262,6 @@ static PetscErrorCode MendCells(EqmSoup soup, const EqmVicinity *vicinity, EqmVe
   PetscFunctionReturn(0);
 }
 
-/* Mend what is safe to mend; the soup is replaced. Removed: later twins of cells and cells that repeat a vertex.
-   Turned: the triangles that disagree with most of their piece, and all tetrahedra of negative volume. Split at their
-   middle: interior edges between two boundary vertices, with all cells around them; at its centre: a cell without an
-   interior vertex that this leaves. Added vertices follow the old ones, which keep their numbers, in use or not;
-   children stand where their parent stood and inherit its density. `parent` (PetscFree it) has the old input number per
-   cell of the new slab. The same on any number of ranks. Collective. */
 PetscErrorCode EqmSoupRepair(EqmSoup *soup, EqmRepair *repair, PetscInt **parent)
 {
   EqmVicinity vicinity;

@@ -32,12 +32,6 @@ PetscErrorCode EqmSoupComputeIdentity(EqmSoup soup, PetscInt64 *identity)
   PetscFunctionReturn(0);
 }
 
-/* EqmSoupCreateFromSlabs - wrap slabs that every rank already holds.
-
-   Collective. Slabs are contiguous in rank order.
-   vertices - 3 * num_local_vertices, cells - cell_size * num_local_cells global vertex numbers; PetscMalloc'ed (or NULL
-   where empty) and taken over, also after a failure. Errors: EQM_ERR_IO if the mesh has more vertices or cells than
-   PetscInt can count. */
 PetscErrorCode EqmSoupCreateFromSlabs(MPI_Comm comm, PetscInt cell_size, PetscInt num_local_vertices,
                                       PetscReal *vertices, PetscInt num_local_cells, PetscInt *cells, const char *file,
                                       EqmSoup *soup)
@@ -72,9 +66,6 @@ PetscErrorCode EqmSoupCreateFromSlabs(MPI_Comm comm, PetscInt cell_size, PetscIn
   PetscFunctionReturn(0);
 }
 
-/* EqmSoupCopy - a soup of its own with the same mesh, slabs, density and provenance.
-
-   Collective. copy - to be freed with EqmSoupDestroy. Errors: out of memory. */
 PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
 {
   const size_t num_vertices = (size_t)(soup->vertex_end - soup->vertex_start);
@@ -101,7 +92,6 @@ PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
   PetscFunctionReturn(0);
 }
 
-/* EqmSoupDestroy - free a soup. Collective; a NULL soup is fine. */
 PetscErrorCode EqmSoupDestroy(EqmSoup *soup)
 {
   PetscFunctionBegin;
@@ -114,7 +104,6 @@ PetscErrorCode EqmSoupDestroy(EqmSoup *soup)
   PetscFunctionReturn(0);
 }
 
-/* EqmSerialMeshReset - free the arrays of a mesh and make it empty. Not collective. */
 PetscErrorCode EqmSerialMeshReset(EqmSerialMesh *serial)
 {
   PetscFunctionBegin;

@@ -65,12 +65,6 @@ static PetscErrorCode CollectTriangles(EqmMesh solid, const Numbering *numbering
   PetscFunctionReturn(0);
 }
 
-/* EqmSurfaceCreate - the surface of a solid as a mesh of its own.
-
-   Collective. solid - a mesh of tetrahedra. The surface's vertices are the solid's boundary vertices in input order,
-   its triangles look outward; both are the same for any number of ranks and dealt in contiguous slabs. Whether it is
-   one closed surface of genus 0 is the diagnosis's question (EqmSoupDiagnose of the solid tells). Errors:
-   EQM_ERR_USAGE if `solid` is a surface itself. */
 PetscErrorCode EqmSurfaceCreate(EqmMesh solid, EqmSurface *surface)
 {
   Numbering numbering = {0};
@@ -98,10 +92,6 @@ PetscErrorCode EqmSurfaceCreate(EqmMesh solid, EqmSurface *surface)
   PetscFunctionReturn(0);
 }
 
-/* EqmSurfaceToSolid - carry values at the surface's vertices to the solid's boundary vertices.
-
-   Collective. slab - `width` reals per vertex of the slab of surface->soup; local - `width` reals per local vertex of
-   the solid, of which those of the boundary, ghosts included, are set and the others stay. */
 PetscErrorCode EqmSurfaceToSolid(EqmSurface surface, PetscInt width, const PetscReal *slab, PetscReal *local)
 {
   PetscFunctionBegin;
@@ -109,8 +99,6 @@ PetscErrorCode EqmSurfaceToSolid(EqmSurface surface, PetscInt width, const Petsc
   PetscFunctionReturn(0);
 }
 
-/* EqmSurfaceFromSolid - the other way: from all local vertices of the solid, ghosts up to date, to the slab of the
-   surface. Collective. */
 PetscErrorCode EqmSurfaceFromSolid(EqmSurface surface, PetscInt width, const PetscReal *local, PetscReal *slab)
 {
   PetscFunctionBegin;
@@ -118,7 +106,6 @@ PetscErrorCode EqmSurfaceFromSolid(EqmSurface surface, PetscInt width, const Pet
   PetscFunctionReturn(0);
 }
 
-/* EqmSurfaceDestroy - free a surface. Collective; NULL is fine. */
 PetscErrorCode EqmSurfaceDestroy(EqmSurface *surface)
 {
   PetscFunctionBegin;

@@ -190,7 +190,7 @@ PetscErrorCode EqmVerticesToOrigin(EqmOrigin o, PetscInt width, const PetscReal 
     PetscCall(PetscArraycpy(rows + width * num, owned + width * v, width));
     number[num++] = o->mesh->vertex_input[v];
   }
-  PetscCall(EqmLeaveRows(given->comm, VerticesOf(given), num, number, MPIU_REAL, width, rows, slab));
+  PetscCall(EqmPutRows(given->comm, VerticesOf(given), num, number, MPIU_REAL, width, rows, slab));
   PetscCall(PetscFree2(number, rows));
   PetscFunctionReturn(0);
 }
@@ -242,7 +242,7 @@ PetscErrorCode EqmCellsToOrigin(EqmOrigin o, PetscInt width, const PetscReal *ow
     PetscCall(PetscArraycpy(rows + width * num, owned + width * c, width));
     number[num++] = o->parent[c];
   }
-  PetscCall(EqmLeaveRows(given->comm, CellsOf(given), num, number, MPIU_REAL, width, rows, slab));
+  PetscCall(EqmPutRows(given->comm, CellsOf(given), num, number, MPIU_REAL, width, rows, slab));
   PetscCall(PetscFree3(number, is_first, rows));
   PetscFunctionReturn(0);
 }
