@@ -4,18 +4,26 @@
 
 #include <equimap.h>
 
+typedef struct _EqmCatalogue EqmCatalogue; /* the command's options: catalogue.h */
+
 /* What the command line says beside options: `equimap COMMAND MESH [MORE] -options`. */
 typedef struct {
   const char *command;
   int num_arguments;
   const char *argument[8];
-  PetscBool help; /* COMMAND --help: print the options and return */
+  PetscBool help;          /* COMMAND --help: ask for every option, print notes and return */
+  const char *help_format; /* --help=FORMAT: text, man, json, words; NULL: text */
+  PetscBool version;
   int num_options_files;
   const char *options_file[8];
   const char *history; /* -history FILE, which PETSc would take for its own option of that name; NULL: not given */
+  const EqmCatalogue *catalogue;
+  char **words; /* what the others point into, with a NULL at the end */
 } EqmCommandLine;
 
-/* A command: runs collectively on PETSC_COMM_WORLD; sets the status that becomes the exit code when it returns 0. */
+/* A command: with line->help asks for every option between PetscOptionsBegin and PetscOptionsEnd, prints with
+   PetscPrintf what else there is to say, and returns; else runs collectively on PETSC_COMM_WORLD; sets the status that
+   becomes the exit code when it returns 0. */
 typedef PetscErrorCode (*EqmCommand)(const EqmCommandLine *line, EqmStatus *status);
 
 PETSC_INTERN PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status); /* disk, square, ... */
@@ -26,7 +34,6 @@ PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmSta
 PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
 
-PETSC_INTERN PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ...);
 
 /* How the work is laid out: -threads, which main takes before any command (asked again to be listed by --help), and
    what belongs to the mesh. Collective. */
@@ -34,8 +41,11 @@ PETSC_INTERN PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject);
 /* Remember which options PETSc has that are none of the command line's. Call before others are inserted. Collective. */
 PETSC_INTERN PetscErrorCode EqmNoteForeignOptions(int argc, char **argv);
 PETSC_INTERN PetscErrorCode EqmForgetForeignOptions(void);
-/* Fail with EQM_ERR_USAGE if an option was given that nobody asked for; of a foreign one say so only. Call after all
-   options have been read, before the work starts. Collective. */
+/* Fail with EQM_ERR_USAGE if an option of the command has no value, one that does not fit its kind, or the name of a
+   folder where a file is written. Collective. */
+PETSC_INTERN PetscErrorCode EqmCheckOptionValues(const EqmCommandLine *line);
+/* Fail with EQM_ERR_USAGE if an option was given that nobody asked for, and name the nearest; of a foreign one say so
+   only. Call after all options have been read, before the work starts. Collective. */
 PETSC_INTERN PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line);
 /* Options of matrices, vectors and solvers are known only when these are made: say after the run which of them nobody
    asked for. Collective. */

@@ -1,20 +1,18 @@
-/* COMMAND --help: what PETSc says of each option, in the house's layout. */
-#include "app.h"
-#include <stdarg.h>
+/* COMMAND --help: the options in sections, for people. */
+#include "catalogue.h"
 #include <stdio.h>
 #include <string.h>
 
-enum { MARGIN = 96, INDENT = 6, LONGEST = 4096 };
+enum { MARGIN = 96, INDENT = 6 };
 
 /* Print words with line breaks, every line behind INDENT blanks. */
-static void PrintWrapped(const char *text, int length)
+static void PrintWrapped(const char *text)
 {
   int column = 0;
 
-  for (int k = 0; k < length;) {
-    int word = 0;
+  while (*text) {
+    const int word = (int)strcspn(text, " ");
 
-    while (k + word < length && text[k + word] != ' ') word++;
     if (column == 0 || column + 1 + word > MARGIN) {
       printf("%s%*s", column ? "\n" : "", INDENT, "");
       column = INDENT;
@@ -22,75 +20,91 @@ static void PrintWrapped(const char *text, int length)
       printf(" ");
       column++;
     }
-    printf("%.*s", word, text + k);
+    printf("%.*s", word, text);
     column += word;
-    k += word;
-    while (k < length && text[k] == ' ') k++;
+    text += word + strspn(text + word, " ");
   }
   printf("\n");
 }
 
-/* What an option does, ": purpose (page)" and a newline or not; the name of a manual page is left out. */
-static void PrintPurpose(const char *text)
+int EqmOptionGroup(const EqmOption *option, const char **purpose)
 {
-  const char *const begin = text + strspn(text, ">: "), *end = begin + strcspn(begin, "\n");
-  const char *const page = strrchr(begin, '(');
+  const int word = (int)strcspn(option->purpose, ": ");
 
-  if (page && !memchr(page, ' ', (size_t)(end - page))) end = page;
-  while (end > begin && end[-1] == ' ') end--;
-  PrintWrapped(begin, (int)(end - begin));
+  if (purpose) *purpose = option->purpose;
+  if (word == 0 || option->purpose[word] != ':' || option->purpose[word + 1] != ' ') return 0;
+  if (strncmp(option->name + 1, option->purpose, (size_t)word) || option->name[1 + word] != '_') return 0;
+  if (purpose) *purpose = option->purpose + word + 2;
+  return word;
 }
 
-/* "  -name <now X : formerly Y>: purpose (page)": name and present value X on a line, the purpose beneath. A list of
-   numbers comes in pieces, "  -name <3", ",5", ">: purpose (page)", and is not shown. */
-static void PrintOption(const char *text)
+static void PrintOption(const EqmOption *option)
 {
-  const char *const open = strchr(text, '<'), *const close = strchr(text, '>');
-  const char *value = open ? open + 1 : NULL, *end = close;
-  int name = (int)strcspn(text, "<\n");
+  const char *const value = EqmOptionValueName(option), *purpose;
 
-  while (name > 0 && (text[name - 1] == ' ' || text[name - 1] == ':')) name--;
-  printf("%.*s", name, text);
-  if (open && close) {
-    if (!strncmp(value, "now ", 4)) value += 4;
-    if (strstr(value, " : ") && strstr(value, " : ") < close) end = strstr(value, " : ");
-    if (end > value) printf(" [%.*s]", (int)(end - value), value);
-    printf("\n");
-    PrintPurpose(close);
+  (void)EqmOptionGroup(option, &purpose);
+  if (!strcmp(option->name, "-log_view")) {
+    printf("  -log_view [:FILE]");
+  } else {
+    printf("  %s%s%s", option->name, value[0] ? " " : "", value);
+  }
+  if (option->initial[0]) printf(" [%s]", option->initial);
+  printf("\n");
+  PrintWrapped(purpose);
+  if (option->choices) PrintWrapped(option->choices);
+}
+
+/* Those of a section that begin alike and say so come under a heading of their own, behind the others. */
+static void PrintSection(const EqmCatalogue *catalogue, int section)
+{
+  const EqmOption *const end = catalogue->option + catalogue->num_options, *title = NULL;
+
+  for (const EqmOption *o = catalogue->option; o < end; o++) {
+    if (o->section != section || EqmOptionGroup(o, NULL)) continue;
+    if (!title) printf("\n%s:\n", catalogue->section[section]);
+    title = o;
+    PrintOption(o);
+  }
+  for (const EqmOption *o = catalogue->option; o < end; o++) {
+    const int word = o->section == section ? EqmOptionGroup(o, NULL) : 0;
+    const EqmOption *earlier = catalogue->option;
+
+    if (!word) continue;
+    while (earlier < o && (earlier->section != section || EqmOptionGroup(earlier, NULL) != word ||
+                           strncmp(earlier->name, o->name, (size_t)word + 1)))
+      earlier++;
+    if (earlier < o) continue; /* printed with the first of its group */
+    printf("\n%s, %.*s:\n", catalogue->section[section], word, o->purpose);
+    for (const EqmOption *member = o; member < end; member++) {
+      if (member->section == section && EqmOptionGroup(member, NULL) == word &&
+          !strncmp(member->name, o->name, (size_t)word + 1))
+        PrintOption(member);
+    }
   }
 }
 
-/* EqmHelpPrintf - PETSc's way of printing help, to be put in the place of PetscHelpPrintf: each option's name and
-   present value, and beneath it what it does.
-
-   Collective in spirit: rank 0 of `comm` prints. */
-PetscErrorCode EqmHelpPrintf(MPI_Comm comm, const char format[], ...)
+/* What the command says beside its options, with line breaks where a line is too long. */
+void EqmHelpNotes(const EqmCatalogue *catalogue)
 {
-  static const char rule[] = "----------------------------------------\n";
-  char text[LONGEST], *choices;
-  PetscMPIInt rank;
-  va_list arguments;
+  const char *text = catalogue->notes ? catalogue->notes : "";
 
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (rank) PetscFunctionReturn(0);
-  va_start(arguments, format);
-  PetscCall(PetscVSNPrintf(text, sizeof(text), format, NULL, arguments));
-  va_end(arguments);
-  choices = strstr(text, " (choose one of)");
-  if (!strncmp(text, rule, strlen(rule))) {
-    printf("\n%s", text + strlen(rule));
-  } else if (!strncmp(text, "  -", 3)) {
-    if (choices) *choices = '\0';
-    PrintOption(text);
-    if (choices) printf("%*s", INDENT - 1, ""); /* the choices come next, each behind a blank */
-  } else if (text[0] == '>') {
-    printf("\n");
-    PrintPurpose(text);
-  } else if (!strncmp(text, " (", 2)) {
-    printf("\n"); /* the end of the choices */
-  } else if (text[0] != ',') {
-    printf("%s", text);
+  while (*text) {
+    int length = (int)strcspn(text, "\n");
+
+    if (length > MARGIN + 3) {
+      length = MARGIN + 3;
+      while (length > 0 && text[length] != ' ') length--;
+      if (length == 0) length = (int)strcspn(text, "\n");
+    }
+    printf("%.*s\n", length, text);
+    text += length;
+    if (*text) text++; /* the blank or the newline */
   }
-  PetscFunctionReturn(0);
+}
+
+void EqmHelpText(const EqmCatalogue *catalogue)
+{
+  EqmHelpNotes(catalogue);
+  for (int s = 0; s < catalogue->num_sections; s++) PrintSection(catalogue, s);
+  fflush(stdout);
 }

@@ -1,7 +1,10 @@
 /* equimap COMMAND ARGUMENTS -options: find the command, hand over, turn its end into an exit code. */
-#include "app.h"
+#include "base/nearest.h"
+#include "catalogue.h"
+#include "commandline.h"
 #include <omp.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -28,64 +31,6 @@ static const CommandRow commands[] = {
 };
 enum { NUM_COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 
-/* Options without a value: what follows them on the command line is an argument, not their value. */
-static const char *const flags[] = {"-quiet",    "-help",         "-repair", "-dry_run",
-                                    "-log_view", "-options_left", "-unique", "-version"};
-
-/* ... but these words, which no mesh is called. */
-static const char *const truths[] = {"0", "1", "true", "false", "yes", "no", "on", "off"};
-#define IS_ONE_OF(word, list) IsOneOf(word, list, sizeof(list) / sizeof((list)[0]))
-
-static PetscBool IsOneOf(const char *word, const char *const list[], size_t length)
-{
-  for (size_t k = 0; k < length; k++) {
-    if (!strcmp(word, list[k])) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-static PetscBool IsOption(const char *word)
-{
-  return (PetscBool)(word[0] == '-' && word[1] != '\0' && !strchr("0123456789.", word[1]));
-}
-
-/* Is word k the value of the option before it? */
-static PetscBool IsValue(char **argv, int k)
-{
-  if (k < 2 || !IsOption(argv[k - 1]) || IsOption(argv[k])) return PETSC_FALSE;
-  return (PetscBool)(!IS_ONE_OF(argv[k - 1], flags) || IS_ONE_OF(argv[k], truths));
-}
-
-/* Split the command line into command, arguments, options files and what is left for PETSc. `argv` keeps its first
-   entry and the options. */
-static void ParseCommandLine(int *argc, char **argv, EqmCommandLine *line, PetscBool *version)
-{
-  int kept = 1;
-
-  for (int k = 1; k < *argc; k++) {
-    const PetscBool has_value = (PetscBool)(k + 1 < *argc && IsValue(argv, k + 1));
-
-    if (!strcmp(argv[k], "--help") || !strcmp(argv[k], "-help") || !strcmp(argv[k], "-h")) {
-      line->help = PETSC_TRUE;
-    } else if (!strcmp(argv[k], "--version") || !strcmp(argv[k], "-version")) {
-      *version = PETSC_TRUE;
-    } else if (!strcmp(argv[k], "-options_file") && has_value &&
-               line->num_options_files < (int)(sizeof(line->options_file) / sizeof(line->options_file[0]))) {
-      line->options_file[line->num_options_files++] = argv[++k];
-    } else if (!strcmp(argv[k], "-history")) {
-      line->history = has_value ? argv[++k] : "";
-    } else if (IsOption(argv[k]) || IsValue(argv, k)) {
-      argv[kept++] = argv[k];
-    } else if (!line->command) {
-      line->command = argv[k];
-    } else if (line->num_arguments < (int)(sizeof(line->argument) / sizeof(line->argument[0]))) {
-      line->argument[line->num_arguments++] = argv[k];
-    }
-  }
-  argv[kept] = NULL;
-  *argc = kept;
-}
-
 /* Is there a file of that name that rank 0 can read? */
 static PetscErrorCode CheckReadable(const char *file)
 {
@@ -104,9 +49,11 @@ static PetscErrorCode CheckReadable(const char *file)
    which answers a missing file with a trace, and -history with a copy of the screen in the file. */
 static PetscErrorCode InsertOptions(const EqmCommandLine *line, int argc, char **argv)
 {
-  PetscBool log_view;
+  char viewer[PETSC_MAX_PATH_LEN] = "";
+  PetscBool log_view, logs_already; /* where the command line or PETSC_OPTIONS asks, PETSc has begun by itself */
 
   PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-log_view", &logs_already));
   PetscCall(EqmNoteForeignOptions(argc, argv));
   for (int k = 0; k < line->num_options_files; k++) {
     PetscErrorCode error;
@@ -124,27 +71,24 @@ static PetscErrorCode InsertOptions(const EqmCommandLine *line, int argc, char *
   }
   PetscCall(PetscOptionsInsertArgs(NULL, argc - 1, argv + 1));
   if (line->history) PetscCall(PetscOptionsSetValue(NULL, "-history", line->history));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-log_view", &log_view));
-  if (log_view) PetscCall(PetscLogDefaultBegin()); /* PETSc has begun long ago where the command line asked for it */
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-log_view", viewer, sizeof(viewer), &log_view));
+  if (log_view && !logs_already) {
+    const PetscBool nested = (PetscBool)(strstr(viewer, "ascii_xml") || strstr(viewer, "ascii_flamegraph"));
+    PetscCall(nested ? PetscLogNestedBegin() : PetscLogDefaultBegin());
+  }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PrintUsage(void)
+static void PrintUsage(void)
 {
-  PetscFunctionBegin;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
-                        "equimap %s: area-, volume- and angle-preserving maps of triangle and tetrahedral meshes\n\n"
-                        "usage: equimap COMMAND ARGUMENTS [-options]      (alone or under mpirun -n N)\n\n",
-                        EqmVersion()));
-  for (int k = 0; k < NUM_COMMANDS; k++) {
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage,
-                          commands[k].purpose));
-  }
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
-                        "\nequimap COMMAND --help lists the options of a command. To begin with:\n"
-                        "  equimap generate hills -n 20000 -o hills.obj\n"
-                        "  equimap disk hills.obj -o hills.h5 && equimap report hills.h5 -o hills.png\n"));
-  PetscFunctionReturn(0);
+  printf("equimap %s: area-, volume- and angle-preserving maps of triangle and tetrahedral meshes\n\n"
+         "usage: equimap COMMAND ARGUMENTS [-options]      (alone or under mpirun -n N)\n\n",
+         EqmVersion());
+  for (int k = 0; k < NUM_COMMANDS; k++)
+    printf("  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage, commands[k].purpose);
+  printf("\nequimap COMMAND --help lists the options of a command. To begin with:\n"
+         "  equimap generate hills -n 20000 -o hills.obj\n"
+         "  equimap disk hills.obj -o hills.h5 && equimap report hills.h5 -o hills.png\n");
 }
 
 /* Unless told otherwise: the cores that this rank may use, shared with the ranks of the same node where nothing binds
@@ -179,50 +123,118 @@ static PetscErrorCode SetThreads(void)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Run(const EqmCommandLine *line, EqmStatus *status)
+/* One rank prints the options, in the form that was asked for. */
+static PetscErrorCode PrintHelp(const CommandRow *row, const EqmCommandLine *line)
 {
+  const char *const format = line->help_format ? line->help_format : "text";
+  static const char *const formats[] = {"text", "man", "json", "words"};
+  PetscMPIInt rank;
+  size_t f = 0;
+
   PetscFunctionBegin;
-  if (!line->command) {
-    PetscCall(PrintUsage());
-    *status = line->help ? EQM_STATUS_CONVERGED : EQM_STATUS_USAGE;
-    PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  while (f < sizeof(formats) / sizeof(formats[0]) && strcmp(format, formats[f])) f++;
+  if (f == sizeof(formats) / sizeof(formats[0]))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "--help=%s: choose one of text, man, json, words", format);
+  if (rank) PetscFunctionReturn(0);
+  if (f == 0) {
+    printf("equimap %s %s\n  %s\n", row->name, row->usage, row->purpose);
+    EqmHelpText(line->catalogue);
+  } else if (f == 1) {
+    EqmHelpMan(line->catalogue, row->name, row->usage, row->purpose);
+  } else if (f == 2) {
+    PetscCall(EqmHelpJson(line->catalogue, row->name, row->usage, row->purpose));
+  } else {
+    EqmHelpWords(line->catalogue, row->name);
   }
-  PetscCall(SetThreads());
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FindCommand(const char *name, const CommandRow **row)
+{
+  const char *names[NUM_COMMANDS];
+  char hint[128];
+
+  PetscFunctionBegin;
   for (int k = 0; k < NUM_COMMANDS; k++) {
-    if (strcmp(line->command, commands[k].name)) continue;
-    if (line->help) {
-      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equimap %s %s\n  %s\n", commands[k].name, commands[k].usage,
-                            commands[k].purpose));
-      PetscHelpPrintf = EqmHelpPrintf;
-      PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
-    }
-    PetscCall(commands[k].run(line, status));
-    PetscCall(EqmWarnOfUnusedOptions());
-    PetscCall(PetscOptionsClearValue(NULL, "-help")); /* or PETSc would add the options of its own last acts */
-    PetscFunctionReturn(0);
+    names[k] = commands[k].name;
+    *row = &commands[k];
+    if (!strcmp(name, commands[k].name)) PetscFunctionReturn(0);
   }
-  EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "there is no command '%s'; equimap --help lists the commands",
-          line->command);
+  PetscCall(EqmDidYouMean(name, names, NUM_COMMANDS, hint, sizeof(hint)));
+  EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "there is no command '%s'%s; equimap --help lists the commands", name, hint);
+}
+
+static PetscErrorCode Run(EqmCommandLine *line, EqmStatus *status)
+{
+  const CommandRow *row;
+  EqmCatalogue catalogue;
+
+  PetscFunctionBegin;
+  PetscCall(FindCommand(line->command, &row));
+  PetscCall(EqmCatalogueCreate(row->run, line, &catalogue));
+  line->catalogue = &catalogue;
+  if (line->help) {
+    PetscCall(PrintHelp(row, line));
+  } else {
+    PetscCall(EqmCheckOptionValues(line));
+    PetscCall(SetThreads());
+    PetscCall(row->run(line, status));
+    PetscCall(EqmWarnOfUnusedOptions());
+  }
+  line->catalogue = NULL;
+  PetscCall(EqmCatalogueDestroy(&catalogue));
+  PetscFunctionReturn(0);
+}
+
+/* The number that a launcher has given this process, 0 without one. Known before MPI_Init. */
+static int RankOfLauncher(PetscBool *launched)
+{
+  static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK",   "PMI_RANK",
+                                      "MPI_RANKID",           "ALPS_APP_PE", "SLURM_PROCID"};
+
+  for (size_t k = 0; k < sizeof(names) / sizeof(names[0]); k++) {
+    const char *const value = getenv(names[k]);
+    *launched = (PetscBool)(value != NULL);
+    if (value) return atoi(value);
+  }
+  return 0;
+}
+
+/* What needs neither MPI nor PETSc. */
+static EqmStatus Introduce(const EqmCommandLine *line, int rank)
+{
+  if (rank == 0 && line->version) {
+    printf("equimap %s (commit %s, PETSc %d.%d.%d)\n", EqmVersion(), EqmCommit(), PETSC_VERSION_MAJOR,
+           PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
+  } else if (rank == 0) {
+    PrintUsage();
+  }
+  return line->version || line->help ? EQM_STATUS_CONVERGED : EQM_STATUS_USAGE;
 }
 
 int main(int argc, char **argv)
 {
   EqmCommandLine line = {0};
   EqmStatus status = EQM_STATUS_CONVERGED;
-  PetscBool version = PETSC_FALSE;
+  PetscBool launched;
   PetscErrorCode error;
+  const int rank = RankOfLauncher(&launched);
+  int num_options;
+  char **options;
 
-  ParseCommandLine(&argc, argv, &line, &version);
+  if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return EQM_STATUS_INTERNAL;
+  if (line.version || !line.command) return Introduce(&line, rank);
+  /* alone, Open MPI would start a daemon first, which takes longer than a small map */
+  if (!launched) (void)setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  argc = num_options;
+  argv = options;
   if (EqmInitialize(&argc, &argv)) return EQM_STATUS_INTERNAL;
   (void)signal(SIGPIPE, SIG_DFL); /* equimap check MESH | head ends like any other program, without PETSc's trace */
-  if (version) {
-    error = PetscPrintf(PETSC_COMM_WORLD, "equimap %s (commit %s, PETSc %d.%d.%d)\n", EqmVersion(), EqmCommit(),
-                        PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
-  } else {
-    error = InsertOptions(&line, argc, argv);
-    if (!error) error = Run(&line, &status);
-  }
+  error = InsertOptions(&line, argc, argv);
+  if (!error) error = Run(&line, &status);
   if (error) status = EqmStatusOfError(error);
   if (EqmForgetForeignOptions() || EqmFinalize()) return EQM_STATUS_INTERNAL;
+  EqmCommandLineFree(&line, options);
   return (int)status;
 }

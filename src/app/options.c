@@ -1,6 +1,7 @@
 /* Options: those that commands share; those that nobody asked for, which are mistakes, and a mistake is said before the
    work starts, not after. */
-#include "app.h"
+#include "base/nearest.h"
+#include "catalogue.h"
 #include <omp.h>
 #include <string.h>
 #include <strings.h>
@@ -94,11 +95,29 @@ PetscErrorCode EqmForgetForeignOptions(void)
   PetscFunctionReturn(0);
 }
 
+/* Write "-name" behind the others, with the nearest name that the command has. */
+static PetscErrorCode AddUnknown(const EqmCatalogue *catalogue, const char *name, char *unknown, size_t length)
+{
+  const int num = catalogue ? catalogue->num_options : 0;
+  const char **names;
+  char hint[128], dashed[LONGEST_NAME];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(num, &names));
+  for (int k = 0; k < num; k++) names[k] = catalogue->option[k].name;
+  PetscCall(PetscSNPrintf(dashed, sizeof(dashed), "-%s", name));
+  PetscCall(EqmDidYouMean(dashed, names, num, hint, sizeof(hint)));
+  PetscCall(PetscFree(names));
+  PetscCall(PetscStrlcat(unknown, unknown[0] ? ", -" : "-", length));
+  PetscCall(PetscStrlcat(unknown, name, length));
+  PetscCall(PetscStrlcat(unknown, hint, length));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line)
 {
-  PetscInt num_left;
+  PetscInt num_left, count = 0;
   char **names, **values, unknown[EQM_MESSAGE_MAX] = "";
-  PetscInt count = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsLeftGet(NULL, &num_left, &names, &values));
@@ -110,8 +129,8 @@ PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line)
                              names[k]));
       continue;
     }
-    PetscCall(PetscStrlcat(unknown, count++ ? ", -" : "-", sizeof(unknown)));
-    PetscCall(PetscStrlcat(unknown, names[k], sizeof(unknown)));
+    PetscCall(AddUnknown(line->catalogue, names[k], unknown, sizeof(unknown)));
+    count++;
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &num_left, &names, &values));
   if (count) {

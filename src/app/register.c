@@ -9,12 +9,11 @@ typedef struct {
   PetscBool has_output, has_summary, has_history, has_checkpoint, has_restart, dry_run;
 } RegisterOptions;
 
-static const char manual[] = "\n"
-                             "A and B are meshes, or results of equimap that hold a map (.h5): both disk-type "
-                             "surfaces, both closed surfaces of\n"
-                             "genus 0, or both solid balls. What is no result is mapped first. B may be the word "
-                             "target: then A is mapped to the\n"
-                             "unit disk or sphere with its landmarks at given points of it.\n";
+static const char manual[] =
+    "\n"
+    "A and B are meshes, or results of equimap that hold a map (.h5): both disk-type surfaces, both\n"
+    "closed surfaces of genus 0, or both solid balls. What is no result is mapped first. B may be the\n"
+    "word target: then A is mapped to the unit disk or sphere with its landmarks at given points of it.\n";
 
 static PetscErrorCode AskOptions(RegisterOptions *options)
 {
