@@ -10,9 +10,11 @@ install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHIN
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/equimap/config OPTIONAL)
 install(DIRECTORY jobs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/equimap/jobs USE_SOURCE_PERMISSIONS
         PATTERN demo.sh EXCLUDE PATTERN setup.sh EXCLUDE PATTERN __pycache__ EXCLUDE)
-# The Python package is the same for every interpreter; -DEQUIMAP_PYTHON_DIR=lib/python3.11/site-packages puts it where one looks.
-set(EQUIMAP_PYTHON_DIR ${CMAKE_INSTALL_DATADIR}/equimap/python CACHE STRING "where the Python package goes, below the prefix")
-install(DIRECTORY python/equimap DESTINATION ${EQUIMAP_PYTHON_DIR} FILES_MATCHING PATTERN "*.py")
+# The Python package is the same for every interpreter. The scripts of jobs/ look for it beside them.
+set(EQUIMAP_PYTHON_DIR "" CACHE STRING "below the prefix, another place for the Python package, such as lib/python3.11/site-packages")
+foreach(place ${CMAKE_INSTALL_DATADIR}/equimap/python ${EQUIMAP_PYTHON_DIR})
+  install(DIRECTORY python/equimap DESTINATION ${place} FILES_MATCHING PATTERN "*.py")
+endforeach()
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/equimap/examples USE_SOURCE_PERMISSIONS)
 install(EXPORT equimapTargets NAMESPACE equimap:: DESTINATION ${EQUIMAP_PACKAGE_DIR})
 

@@ -3,6 +3,7 @@
 
     jobs/sweep.py TABLE                             on this machine, row by row; then the result's table and its plots
     jobs/sweep.py TABLE --rows 2,5-8                some rows
+    jobs/sweep.py TABLE --dry-run                   the command lines; runs nothing
     jobs/sweep.py TABLE --list                      how far it has come; runs nothing
     jobs/sweep.py TABLE --collect                   only the result's table and the plots, of what is there
     sbatch --array=1-24%4 jobs/sweep.slurm TABLE    under Slurm; PBS and LSF: sweep.pbs, sweep.lsf; jobs/submit.py helps
@@ -24,14 +25,15 @@ import fcntl
 import os
 import pathlib
 import shlex
-import shutil
 import signal
 import subprocess
 import sys
 import time
 
 import sweep_report
-from sweep_table import MAP_WRITTEN, OWN, STOPPED, Store, TableError, find_mesh, find_preset, fingerprint, generated, read_table
+from sweep_launch import environment, find_program, launcher
+from sweep_meshes import are_there, generate, generator, places_of
+from sweep_table import MAP_WRITTEN, OWN, STOPPED, Store, TableError, find_preset, fingerprint, generated, read_table
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -61,11 +63,6 @@ def row_numbers(text):
     return numbers
 
 
-def find_program():
-    built = HERE.parent / "build" / "equimap"
-    return os.environ.get("EQUIMAP") or (str(built) if built.exists() else shutil.which("equimap"))
-
-
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table")
@@ -75,19 +72,13 @@ def arguments():
     parser.add_argument("--program", default=find_program(), help="default: EQUIMAP, or build/equimap")
     parser.add_argument("--retry", action="store_true", help="run failed rows again")
     parser.add_argument("--no-collect", action="store_true", help="no table and plots at the end")
+    parser.add_argument("--dry-run", action="store_true", help="show the command lines of what is left to do; run nothing")
     parser.add_argument("--list", action="store_true", help="say how far it has come; run nothing")
     parser.add_argument("--collect", action="store_true", help="write table and plots; run nothing")
     parser.add_argument("--numbers", action="store_true", help="print the numbers of the rows, for other programs")
     args = parser.parse_args()
     args.results = pathlib.Path(args.results or "sweep-" + pathlib.Path(args.table).stem)
     return args
-
-
-def environment(threads):
-    result = dict(os.environ, OMP_NUM_THREADS=str(threads))
-    if os.geteuid() == 0:  # Open MPI refuses root unless told twice
-        result.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    return result
 
 
 @contextlib.contextmanager
@@ -103,41 +94,9 @@ def locked(path):
         yield True
 
 
-def place_of_mesh(args, row):
-    """The row's mesh, generated if it is one of ours; None if it is not there."""
-    shape = generated(row.mesh)
-    return args.results / "meshes" / f"{shape[0]}-{shape[1]}.h5" if shape else find_mesh(row.mesh, args.meshes)
-
-
-def generate(args, row):
-    """Make the mesh of a row like hills:20000 unless it is there; several rows may want it at once."""
-    mesh = place_of_mesh(args, row)
-    if not generated(row.mesh) or mesh.exists():
-        return mesh
-    mesh.parent.mkdir(parents=True, exist_ok=True)
-    shape, vertices = generated(row.mesh)
-    part = mesh.with_name(f"part-{os.getpid()}-{mesh.name}")
-    done = subprocess.run([args.program, "generate", shape, "-n", str(vertices), "-o", str(part)], env=environment(1),
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    if done.returncode:
-        raise TableError(f"row {row.number}: cannot generate {row.mesh}: {done.stdout.strip()[-200:]}")
-    os.replace(part, mesh)
-    part.with_suffix(".xmf").unlink(missing_ok=True)
-    return mesh
-
-
-def launcher(ranks):
-    """How a run is started: alone on one rank, else by mpirun or what EQUIMAP_MPIRUN names."""
-    if os.environ.get("EQUIMAP_MPIRUN"):
-        return shlex.split(os.environ["EQUIMAP_MPIRUN"].replace("%n", str(ranks)))
-    if ranks == 1:
-        return []
-    return ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-
-
-def command_line(args, row, store, mesh):
+def command_line(args, row, store, meshes):
     preset = find_preset(row.preset)
-    command = [*launcher(row.ranks), args.program, row.command, str(mesh), "-o", str(store.folder / "result.h5"),
+    command = [*launcher(row.ranks), args.program, row.command, *map(str, meshes), "-o", str(store.folder / "result.h5"),
                "-summary", str(store.summary_file), "-history", str(store.history_file), "-threads", str(row.threads)]
     command += ["-options_file", str(preset)] if preset else []
     command += ["-checkpoint", str(store.checkpoint)]
@@ -166,15 +125,15 @@ def wait_for(stop):
     return code
 
 
-def run_row(args, row, store, mesh, stop):
+def run_row(args, row, store, meshes, stop):
     """Run a row to its end or to a stop, and note how it ended."""
     before = store.outcome()
-    mark = fingerprint(row, mesh)
+    mark = fingerprint(row, meshes)
     if before is None or before["fingerprint"] != mark or before["exit_code"] == 7:  # another run's checkpoint
         if before is not None:
             store.clear("lock")
         before = {"attempts": 0, "wall_seconds": 0.}
-    command = command_line(args, row, store, mesh)
+    command = command_line(args, row, store, meshes)
     # Written before the run as well: if it is killed, its checkpoint is known to be this row's.
     record = {"fingerprint": mark, "exit_code": None, "attempts": before["attempts"] + 1,
               "wall_seconds": before["wall_seconds"], "command": command}
@@ -196,21 +155,21 @@ def run_row(args, row, store, mesh, stop):
 
 def process(args, row, stop):
     """Run a row unless there is nothing to do; its state afterwards."""
-    mesh = generate(args, row)
-    if mesh is None:
+    meshes = generate(args, row)
+    if meshes is None:
         return "no mesh"
     store = Store(args.results, row)
     with locked(store.folder / "lock") as mine:
         if not mine:
             return "running elsewhere"
-        state = store.state(mesh)
+        state = store.state(meshes)
         if state == "finished" or (state == "failed" and not args.retry):
             print(f"sweep: row {row.number}, {row.name}: {describe(store)} (before)", flush=True)
             return state
         print(f"sweep: row {row.number}, {row.name}: {'goes on' if store.has_checkpoint() else 'begins'}", flush=True)
-        run_row(args, row, store, mesh, stop)
+        run_row(args, row, store, meshes, stop)
         print(f"sweep: row {row.number}, {row.name}: {describe(store)}", flush=True)
-        return store.state(mesh)
+        return store.state(meshes)
 
 
 def describe(store):
@@ -223,10 +182,27 @@ def describe(store):
 
 
 def state_of(args, row):
-    mesh = place_of_mesh(args, row)
-    if mesh is None:
+    places = places_of(args, row)
+    if places is None:
         return "no mesh"
-    return Store(args.results, row).state(mesh) if mesh.exists() else "to do"
+    return Store(args.results, row).state(places) if are_there(places) else "to do"
+
+
+def show(args, rows):
+    """What a sweep would do, as lines for a shell; nothing is run, and what has finished is left out."""
+    made = set()
+    for row in rows:
+        state, store = state_of(args, row), Store(args.results, row)
+        print(f"# row {row.number}, {row.name}: {state}" + (f": {', '.join(row.meshes)}" if state == "no mesh" else ""))
+        if state in ("no mesh", "finished") or (state == "failed" and not args.retry):
+            continue
+        places = places_of(args, row)
+        for name, place in zip(row.meshes, places):
+            if generated(name) and not place.exists() and place not in made:
+                made.add(place)
+                print(f"mkdir -p {shlex.quote(str(place.parent))} && {shlex.join(generator(args, name, place))}")
+        threads = f"OMP_NUM_THREADS={row.threads} "
+        print(f"mkdir -p {shlex.quote(str(store.folder))} && {threads}{shlex.join(command_line(args, row, store, places))}")
 
 
 def tell(args, states):
@@ -237,7 +213,7 @@ def tell(args, states):
     print(", ".join(f"{len(rows)} {state}" for state, rows in groups.items()))
     for state, rows in groups.items():
         for row in rows if state != "finished" else ():
-            word = Store(args.results, row).complaint() if state == "failed" else row.mesh if state == "no mesh" else ""
+            word = Store(args.results, row).complaint() if state == "failed" else ", ".join(row.meshes) if state == "no mesh" else ""
             print(f"  {state}: row {row.number}, {row.name}" + (f": {word}" if word else ""))
 
 
@@ -264,6 +240,9 @@ def main():
         find_preset(row.preset), find_preset(row.paper)  # complain before the first run, not after the last
     if not (args.list or args.collect) and not args.program:
         raise TableError("there is no program; build it, or say where it is with --program or EQUIMAP")
+    if args.dry_run:
+        show(args, chosen)
+        return 0
     stop = Stop()
     states = []
     for row in chosen:

@@ -1,14 +1,19 @@
 """The pictures of a sweep: energy against iterations and against seconds, time against vertices. Used by sweep_report.py;
-needs Matplotlib, and does without pictures where it is missing."""
+needs Matplotlib, and does without pictures where it is missing.
+
+Lines join only what is one series: a shape in several sizes under the same options that ended in the same way."""
 import dataclasses
+import os
 import sys
 
 from sweep_table import Row, generated
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#7f7f7f")  # Okabe and Ito
+MARKS = ("o", "s", "^", "D", "v", "P", "X")
+LINES = ("-", "--", ":", "-.")
 LOGARITHMIC_FROM = 500  # iterations
 HOLLOW = {"marker": "o", "markerfacecolor": "white", "markersize": 7, "zorder": 3}
-# What may tell one run from another, beside its mesh; the first that are needed become its label.
+# What tells one way of computing from another.
 FIELDS = (
     lambda run: run.summary["command"],
     lambda run: run.summary["method"],
@@ -50,22 +55,36 @@ class Run:
 def family(run):
     """What shares a line of panels: the runs of a mesh, or of a generated shape."""
     shape = generated(run.row.mesh)
-    return shape[0] if shape else run.row.mesh
+    return (shape[0] if shape else run.row.mesh) + (f" to {run.row.mesh_b}" if run.row.mesh_b else "")
 
 
-def labels(runs):
-    """For each run what tells it from the others of the same mesh, with as few words as will do."""
-    def clashes(words):
-        return len(runs) - len({(run.row.mesh, word) for run, word in zip(runs, words)})
+def series_of(runs):
+    """Runs that may share a line: of one mesh or one generated shape in several sizes, computed and ended in one way.
 
-    words = ["" for _ in runs]
-    for field in FIELDS:
-        longer = [", ".join(filter(None, (word, field(run)))) for word, run in zip(words, runs)]
-        if clashes(longer) < clashes(words):
-            words = longer
-    if clashes(words):
-        words = [run.row.name for run in runs]
-    return [word or run.summary["method"] for word, run in zip(words, runs)]
+    The rows' names, by which the legend calls them, with a * where they differ: {name: runs}."""
+    groups = {}
+    for run in runs:
+        sizes_differ = not any(run.row.mesh == other.row.mesh for other in groups.get(key_of(run), ()))
+        groups.setdefault(key_of(run) if sizes_differ else (key_of(run), run.row.name), []).append(run)
+    found = {}
+    for members in groups.values():
+        name = common_name([run.row.name for run in members])
+        found[name if name not in found else members[0].row.name] = members
+    return found
+
+
+def key_of(run):
+    return (family(run), run.summary["status"], *(field(run) for field in FIELDS))
+
+
+def common_name(names):
+    """hills-*-ncg of hills-5000-ncg and hills-20000-ncg; all the names, if they have nothing in common."""
+    if len(set(names)) == 1:
+        return names[0]
+    digits = "0123456789"  # a number is the same, or it is not
+    before = os.path.commonprefix(names).rstrip(digits)
+    after = os.path.commonprefix([name[len(before):][::-1] for name in names])[::-1].lstrip(digits)
+    return f"{before}*{after}" if before or after else ", ".join(names)
 
 
 def style(axes):
@@ -95,34 +114,36 @@ def draw_energy(pyplot, runs, name):
 
 
 def draw_panel(axes, runs, column):
-    """A curve for each run: its colour is its label's, and the larger of several meshes, the stronger."""
-    words = labels(runs)
-    names, sizes = list(dict.fromkeys(words)), sorted({run.vertices for run in runs})
-    for run, word in zip(runs, words):
-        k = names.index(word)
-        axes.plot(*zip(*run.curve(column)), "-" if k < len(COLORS) else "--", color=COLORS[k % len(COLORS)], linewidth=1.6,
-                  alpha=strength(run.vertices, sizes), label=word if run.vertices == sizes[-1] else None)
-        for point in run.published_points(column):
-            axes.plot(*point, markeredgecolor=COLORS[k % len(COLORS)], **HOLLOW)
+    """A curve for each run: its colour is its series', and the larger of several meshes, the stronger."""
+    sizes = sorted({run.vertices for run in runs})
+    for k, (word, members) in enumerate(series_of(runs).items()):
+        color = COLORS[k % len(COLORS)]
+        for run in members:
+            axes.plot(*zip(*run.curve(column)), LINES[k // len(COLORS) % len(LINES)], color=color, linewidth=1.6,
+                      alpha=strength(run.vertices, sizes), label=word if run is members[-1] else None)
+            for point in run.published_points(column):
+                axes.plot(*point, markeredgecolor=color, **HOLLOW)
     for size in sizes if len(sizes) > 1 else ():
         axes.plot([], [], color="black", linewidth=1.6, alpha=strength(size, sizes), label=f"{size:,} vertices")
     if any(list(run.published_points("iteration")) for run in runs):
         axes.plot([], [], linestyle="none", markeredgecolor="0.3", label="published", **HOLLOW)
     style(axes)
+    scale(axes, column, max(run.summary["iterations"] for run in runs))
+
+
+def scale(axes, column, longest):
     axes.set_yscale("log")
     low, high = axes.get_ylim()
     if high < 100. * low:
         plain_numbers(axes.yaxis)
-    longest = max(run.summary["iterations"] for run in runs)
     if column == "seconds":
         axes.set_xscale("log")
         plain_numbers(axes.xaxis)
-    elif longest > LOGARITHMIC_FROM:
+        return
+    if longest > LOGARITHMIC_FROM:
         axes.set_xscale("symlog", linthresh=10, linscale=.5)
         plain_numbers(axes.xaxis)
-        axes.set_xlim(left=0)
-    else:
-        axes.set_xlim(left=0)
+    axes.set_xlim(left=0)
 
 
 def strength(size, sizes):
@@ -130,27 +151,25 @@ def strength(size, sizes):
 
 
 def draw_time(pyplot, runs, name):
-    """Seconds over vertices, a line for each way of computing."""
-    figure, axes = pyplot.subplots(figsize=(8, 4.8), layout="constrained")
-    series, with_paper = {}, False
-    for run, word in zip(runs, labels(runs)):
-        series.setdefault(word, []).append(run)
+    """Seconds over vertices, a line for each series, a point for what stands alone."""
+    series, with_paper = series_of(runs), False
+    columns = -(-len(series) // 30)
+    figure, axes = pyplot.subplots(figsize=(8 + 2.4 * columns, max(4.8, .17 * min(len(series), 30))), layout="constrained")
     for k, (word, members) in enumerate(series.items()):
         color = COLORS[k % len(COLORS)]
         points = sorted((run.vertices, run.summary["seconds"]["total"]) for run in members)
-        axes.plot(*zip(*points), "o-", color=color, linewidth=1.6, markersize=5, label=word)
-        paper = sorted((run.vertices, run.paper[None]["seconds"]) for run in members
-                       if run.row.paper == run.row.preset and "seconds" in run.paper.get(None, {}))
-        if paper:
-            with_paper = True
-            axes.plot(*zip(*paper), ":", color=color, linewidth=1., markeredgecolor=color, **HOLLOW)
+        axes.plot(*zip(*points), MARKS[k // len(COLORS) % len(MARKS)] + "-", color=color, linewidth=1.6, markersize=5, label=word)
+        for run in members:
+            if run.row.paper == run.row.preset and "seconds" in run.paper.get(None, {}):
+                with_paper = True
+                axes.plot(run.vertices, run.paper[None]["seconds"], markeredgecolor=color, **HOLLOW)
     if with_paper:
-        axes.plot([], [], ":", color="0.3", markeredgecolor="0.3", label="published (another machine)", **HOLLOW)
+        axes.plot([], [], linestyle="none", markeredgecolor="0.3", label="published (another machine)", **HOLLOW)
     style(axes)
     axes.set(xscale="log", yscale="log", xlabel="vertices", ylabel="seconds")
     plain_numbers(axes.xaxis)
     plain_numbers(axes.yaxis)
-    axes.legend(frameon=False, fontsize=8)
+    axes.legend(loc="center left", bbox_to_anchor=(1., .5), frameon=False, fontsize=8, ncol=columns)
     save(pyplot, figure, name)
 
 

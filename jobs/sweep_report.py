@@ -1,11 +1,34 @@
-"""What a sweep ends in: one table with the papers' figures beside ours, and plots. Used by sweep.py."""
+"""What a sweep ends in: one table with the papers' figures beside ours, the same for people, and plots. Used by sweep.py.
+
+Columns of sweep.csv, a line per finished row, and one more ("on the way") for every number of iterations at which the
+row's paper gives figures; a field is empty where there is no figure:
+
+    row, name, command, mesh, mesh_b, preset, options, ranks, threads    as in the table; so are columns of its own
+    method, status      the method that ran; how it ended: converged, not converged, folds remain, on the way
+    vertices, cells     of the mesh
+    memory_bytes        the most that all ranks together had
+    attempts            how often the row was started
+    wall_seconds        of all attempts, with the program's start and its reading and writing
+    energy              E at the end (conformal: the Dirichlet energy; register: of the map of A to the target)
+    sd, sd_by_mean      standard deviation of the ratios, unweighted; the same over their mean
+    folds, iterations   at the end
+    seconds             the program's own total of the last attempt
+    error_mean, error_sd, error_p25 ... error_p95    of |r - 1| over the cells: mean, standard deviation, percentiles
+    eigenvalue          the smallest of the energy's Hessian, with -hessian_eigenvalues
+    noise_error         err-E of 001 (6.6) against the row that the column `against` names
+    dissimilarity       register: d(phi) of 003
+    landmark_error      register: the largest distance between landmarks in the target, in radii
+    paper.X             the published X
+"""
 import csv
 import sys
 
 import sweep_plots
+import sweep_text
 from sweep_table import Store, find_preset, published
 
 ALWAYS = ("energy", "sd", "folds", "iterations", "seconds")
+SOMETIMES = ("eigenvalue", "noise_error", "dissimilarity", "landmark_error")
 
 
 def figures_at_end(summary):
@@ -17,8 +40,15 @@ def figures_at_end(summary):
         "error_mean": error["mean"], "error_sd": error["sd"],
         **{f"error_{p}": error[p] for p in ("p25", "p50", "p75", "p95")},
     }
-    eigenvalues = summary.get("hessian_eigenvalues")
-    return {**figures, "eigenvalue": eigenvalues[0]} if eigenvalues else figures
+    if summary.get("hessian_eigenvalues"):
+        figures["eigenvalue"] = summary["hessian_eigenvalues"][0]
+    return {**figures, **figures_of_registration(summary.get("register", {}))}
+
+
+def figures_of_registration(register):
+    figures = {"dissimilarity": register["dissimilarity"]} if "dissimilarity" in register else {}
+    error = register.get("landmarks", {}).get("error", {}).get("max")
+    return figures if error is None else {**figures, "landmark_error": error}
 
 
 def figures_after(history, iterations):
@@ -65,7 +95,7 @@ def lines_of(results, row, rows):
     summary, outcome, history = store.summary(), store.outcome(), read_history(store)
     paper = published(find_preset(row.paper))
     fixed = {
-        "row": row.number, "name": row.name, "command": row.command, "mesh": row.mesh, "preset": row.preset,
+        "row": row.number, "name": row.name, "command": row.command, "mesh": row.mesh, "mesh_b": row.mesh_b, "preset": row.preset,
         "options": " ".join(row.options), "ranks": row.ranks, "threads": row.threads, **row.others,
         "method": summary["method"], "status": summary["status"], "vertices": summary["mesh"]["vertices"],
         "cells": summary["mesh"]["cells"], "memory_bytes": summary["memory_bytes"]["total"],
@@ -80,7 +110,8 @@ def lines_of(results, row, rows):
 def write_table(lines, name):
     """A column `energy`, a column `paper.energy`, and so on for every figure that any paper's row has."""
     in_papers = [figure for _, _, paper in lines for figure in paper]
-    figures = list(dict.fromkeys([*ALWAYS, *in_papers]))
+    ours = [figure for _, figures, _ in lines for figure in figures if figure in SOMETIMES]
+    figures = list(dict.fromkeys([*ALWAYS, *ours, *in_papers]))
     columns = list(dict.fromkeys(key for fixed, _, _ in lines for key in fixed))
     for figure in figures:
         columns += [figure, f"paper.{figure}"] if figure in in_papers else [figure]
@@ -92,13 +123,14 @@ def write_table(lines, name):
 
 
 def write(results, rows):
-    """Write results/sweep.csv, results/energy.png and results/time.png of the finished rows."""
+    """Write results/sweep.csv, sweep.txt, energy.png and time.png of the finished rows."""
     if not rows:
         print("sweep: no row has finished: no table")
         return
     lines = [line for row in rows for line in lines_of(results, row, rows)]
     write_table(lines, results / "sweep.csv")
-    print(f"sweep: {results / 'sweep.csv'}")
+    (results / "sweep.txt").write_text(sweep_text.page(lines), encoding="utf-8")
+    print(f"sweep: {results / 'sweep.csv'}, and for reading {results / 'sweep.txt'}")
     runs = [sweep_plots.Run(row, Store(results, row).summary(), read_history(Store(results, row)),
                             published(find_preset(row.paper))) for row in rows]
     for picture in sweep_plots.draw(runs, results):

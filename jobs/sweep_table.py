@@ -3,8 +3,9 @@
 A table is a CSV (or .tsv) file with a header and a run per row; lines that begin with # are comments. Columns:
 
     name      a folder of that name holds what the run leaves; every row its own
-    command   disk, square, sphere, ball, conformal
+    command   disk, square, sphere, ball, conformal, register
     mesh      a file, seen from the folder of meshes; its suffix may be left out. SHAPE:N is generated (hills:20000)
+    mesh_b    register: the other mesh, or the word target
     preset    an options file, seen from config/, without its suffix (000/table1-ncg-foot), or none
     options   more options of the program, or none; they win over the preset's
     paper     the preset whose published figures are set beside ours, if it is not the one that is run
@@ -21,9 +22,10 @@ import re
 import shlex
 import zlib
 
-COLUMNS = ("name", "command", "mesh", "preset", "options", "paper", "ranks", "threads")
+COLUMNS = ("name", "command", "mesh", "mesh_b", "preset", "options", "paper", "ranks", "threads")
 SUFFIXES = (".h5", ".obj", ".off", ".ply", ".msh", ".vtu", ".vtk", ".stl", ".gii")
 MAP_WRITTEN = (0, 4, 5)  # converged, stopped before, folds remain
+TARGET = "target"  # in the place of a second mesh: the unit disk or sphere itself
 STOPPED = 75  # stopped on request with a checkpoint
 OWN = (0, 2, 3, 4, 5, 6, 7, STOPPED)  # told by the program itself; 1 is a launcher's as well
 NUMBER = r"-?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?"
@@ -48,12 +50,17 @@ class Row:
     name: str
     command: str
     mesh: str
+    mesh_b: str
     preset: str
     options: list
     paper: str  # the preset with the published figures
     ranks: int
     threads: int
     others: dict
+
+    @property
+    def meshes(self):
+        return [self.mesh, self.mesh_b] if self.mesh_b else [self.mesh]
 
 
 def number_of(text, row, column):
@@ -95,11 +102,13 @@ def make_row(number, fields):
     for column in ("command", "mesh"):
         if not fields.get(column):
             raise TableError(f"row {number}: no {column}")
+    if bool(fields.get("mesh_b")) != (fields["command"] == "register"):
+        raise TableError(f"row {number}: register wants two meshes, in the columns mesh and mesh_b, every other command one")
     try:
         options = shlex.split(fields.get("options", ""))
     except ValueError as error:
         raise TableError(f"row {number}: the options '{fields['options']}' cannot be understood: {error}") from error
-    return Row(number, name, fields["command"], fields["mesh"], fields.get("preset", ""), options,
+    return Row(number, name, fields["command"], fields["mesh"], fields.get("mesh_b", ""), fields.get("preset", ""), options,
                fields.get("paper") or fields.get("preset", ""), number_of(fields.get("ranks"), number, "ranks"),
                number_of(fields.get("threads"), number, "threads"), {key: value for key, value in fields.items() if key not in COLUMNS})
 
@@ -153,10 +162,10 @@ def published(preset):
     return found
 
 
-def fingerprint(row, mesh):
+def fingerprint(row, meshes):
     """What a row's outcome depends on; if it has changed, the outcome is of another run."""
-    content = zlib.crc32(mesh.read_bytes()) if mesh else row.mesh
-    return {"command": row.command, "mesh": content, "preset": preset_options(find_preset(row.preset)),
+    contents = [mesh if mesh == TARGET else zlib.crc32(mesh.read_bytes()) for mesh in meshes]
+    return {"command": row.command, "mesh": contents[0] if len(contents) == 1 else contents, "preset": preset_options(find_preset(row.preset)),
             "options": row.options, "ranks": row.ranks, "threads": row.threads}
 
 
@@ -170,8 +179,6 @@ class Store:
         self.summary_file = self.folder / "summary.json"
         self.history_file = self.folder / "history.csv"
         self.checkpoint = self.folder / "checkpoint.h5"
-        self.previous = self.folder / "checkpoint.h5.previous"  # which the program keeps until the next is complete
-        self.kept_mesh = self.folder / "checkpoint.mesh.h5"  # the program's copy, to go on where the mesh is gone
         self.log_file = self.folder / "log.txt"
 
     def outcome(self):
@@ -181,17 +188,18 @@ class Store:
         return read_json(self.summary_file)
 
     def has_checkpoint(self):
-        return self.checkpoint.exists() or self.previous.exists()
+        """The checkpoint itself, the one before it, or those of register's parts (checkpoint.h5.1)."""
+        return any(self.folder.glob("checkpoint.h5*"))
 
     def forget_checkpoint(self):
-        self.checkpoint.unlink(missing_ok=True)
-        self.previous.unlink(missing_ok=True)
-        self.kept_mesh.unlink(missing_ok=True)
+        """And the program's copies of the meshes, from which it goes on where they are gone."""
+        for path in self.folder.glob("checkpoint*"):
+            path.unlink()
 
-    def state(self, mesh):
+    def state(self, meshes):
         """finished, interrupted, failed, begun (it runs, or was killed), or to do; what lies there may be of another run."""
         outcome = self.outcome()
-        if outcome is None or outcome["fingerprint"] != fingerprint(self.row, mesh):
+        if outcome is None or outcome["fingerprint"] != fingerprint(self.row, meshes):
             return "to do"
         if outcome["exit_code"] is None:
             return "begun"

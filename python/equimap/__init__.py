@@ -12,7 +12,7 @@
 from .errors import (CheckpointError, EquimapError, FileError, FoldsRemain, InternalError, MeshError, NotConverged, Stopped,
                      UsageError)
 from .files import Result, read, write
-from .program import find_program
+from .launch import find_program
 from .runs import check, generate, measure, run
 
 __all__ = ["CheckpointError", "EquimapError", "FileError", "FoldsRemain", "InternalError", "MeshError", "NotConverged", "Result",

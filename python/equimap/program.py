@@ -1,46 +1,10 @@
-"""The program: where it is, how it is started, what becomes of its exit code."""
-import os
-import pathlib
-import shlex
-import shutil
+"""Starting the program, and what becomes of its exit code."""
 import subprocess
 import tempfile
 import warnings
 
 from .errors import OF_CODE, EquimapError, InternalError
-
-HERE = pathlib.Path(__file__).resolve().parent
-
-
-def find_program():
-    """The program's path: the environment's EQUIMAP, build/equimap of the tree, bin/ of the installation that this package
-    belongs to, or the one on the PATH."""
-    if os.environ.get("EQUIMAP"):
-        return os.environ["EQUIMAP"]
-    for place in (HERE.parents[1] / "build" / "equimap", HERE.parents[3] / "bin" / "equimap"):
-        if place.is_file() and os.access(place, os.X_OK):
-            return str(place)
-    found = shutil.which("equimap")
-    if not found:
-        raise FileNotFoundError("the program equimap is not there: build it, or say where it is with EQUIMAP or program=")
-    return found
-
-
-def launcher(ranks):
-    """How ranks are started: by mpirun, or by what EQUIMAP_MPIRUN names (%n stands for their number)."""
-    if os.environ.get("EQUIMAP_MPIRUN"):
-        return shlex.split(os.environ["EQUIMAP_MPIRUN"].replace("%n", str(ranks)))
-    if ranks == 1:
-        return []
-    return ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-
-
-def environment():
-    result = dict(os.environ)
-    if hasattr(os, "geteuid") and os.geteuid() == 0:  # Open MPI refuses root unless told twice
-        result.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    return result
-
+from .launch import environment, find_program, launcher
 
 def end(process):
     """Ask a run to stop, and see that it does."""
@@ -58,7 +22,10 @@ def start(arguments, ranks=1, program=None, progress=None):
 
     `progress` is called with every line as it comes; True prints them."""
     tell = print if progress is True else progress
-    command = [*launcher(ranks), str(program or find_program()), *map(str, arguments)]
+    program = program or find_program()
+    if not program:
+        raise FileNotFoundError("the program equimap is not there: build it, or say where it is with EQUIMAP or program=")
+    command = [*launcher(ranks), str(program), *map(str, arguments)]
     lines = []
     with tempfile.TemporaryFile("w+", errors="replace") as errors:
         with subprocess.Popen(command, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors,

@@ -17,11 +17,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 JOBS = HERE.parents[1] / "jobs"
 sys.path[:0] = [str(JOBS), str(HERE.parent / "support")]
 import slurm  # noqa: E402
+import sweep_plots  # noqa: E402
 import sweep_table  # noqa: E402
 
 PATIENCE = 300  # seconds, for what takes a few, or twenty, on an idle machine
 
-HEADER = "name,command,mesh,preset,options,paper,ranks,threads,against\n"
+HEADER = "name,command,mesh,preset,options,paper,ranks,threads,against,mesh_b\n"
 ENDLESS = "method: rgd\nmax_it: 1000000\nenergy_rtol: 0\ncheckpoint_every: 100\n"
 
 
@@ -82,6 +83,9 @@ def check_run():
     if importlib.util.find_spec("matplotlib"):
         for name in ("energy", "time"):
             assert pathlib.Path(f"sweep-t/{name}.png").read_bytes().startswith(b"\x89PNG")
+    text = pathlib.Path("sweep-t/sweep.txt").read_text()
+    assert "4 rows: " in text and "against the papers: " in text and "hills:400, " in text, text
+    assert all(any(name in line and line.count("e-") > 1 for line in text.splitlines()) for name in ("paper", "sphere")), text
     before = pathlib.Path("sweep-t/paper/outcome.json").stat().st_mtime_ns
     said = sweep("t.csv", "--no-collect", expected=1)
     assert said.count("(before)") == 5 and "begins" not in said, said
@@ -97,6 +101,45 @@ def check_change():
     assert "row 1, paper: begins" in said and "row 2, default: converged" in said and last_iteration(
         pathlib.Path("sweep-t/paper")) == 21, said
     assert "2 finished" in sweep("t.csv", "--list")
+
+
+def check_register():
+    """A row with two meshes, and one with a mesh and the target; what --dry-run shows is what is run; pandas opens the table."""
+    pathlib.Path("pairs.csv").write_text("a,b\n0,0\n")
+    write_table("r.csv", "pair,register,hills:300,,-landmarks pairs.csv -max_it 9,,1,1,,hills:500",
+                "plain,disk,hills:300,,-max_it 3,,1,1,,", "absent,register,hills:300,,,,1,1,,nowhere")
+    shown = sweep("r.csv", "--dry-run")
+    assert not pathlib.Path("sweep-r").exists() and "# row 3, absent: no mesh: hills:300, nowhere" in shown, shown
+    lines = [line for line in shown.splitlines() if not line.startswith("#")]
+    assert [" generate " in line for line in lines] == [True, True, False, False], shown
+    subprocess.run("\n".join(lines[:2]), shell=True, check=True, stdout=subprocess.DEVNULL)
+    said = sweep("r.csv")
+    assert "2 finished, 1 no mesh" in said and "# row 2, plain: finished" in sweep("r.csv", "--dry-run"), said
+    logs = [pathlib.Path(f"sweep-r/{name}/log.txt").read_text().splitlines()[0] for name in ("pair", "plain")]
+    assert [line.split(" && OMP_NUM_THREADS=1 ")[1] for line in lines[2:]] == [log[2:] for log in logs], (shown, logs)
+    pair = lines_of("sweep-r/sweep.csv")[0]
+    assert (pair["mesh"], pair["mesh_b"]) == ("hills:300", "hills:500") and float(pair["landmark_error"]) < .1, pair
+    assert float(pair["dissimilarity"]) > 0. and "hills:300 to hills:500" in pathlib.Path("sweep-r/sweep.txt").read_text()
+    assert not list(pathlib.Path("sweep-r").glob("*/checkpoint*"))
+    documented = (JOBS / "sweep_report.py").read_text().split('"""')[1]
+    for column in pair:
+        assert column.startswith("paper.") or column == "against" or column in documented, f"{column} is not explained"
+    if importlib.util.find_spec("pandas"):
+        import pandas
+        frame = pandas.read_csv("sweep-r/sweep.csv", index_col="name")
+        assert frame.loc["plain", "iterations"] == 3 and frame["energy"].dtype == float and len(frame) == 2, frame
+
+
+def check_series():
+    """What the plots join by a line: sizes of one shape under the same options that ended alike, and nothing else."""
+    def run(name, mesh, options="", status="converged"):
+        row = sweep_table.Row(1, name, "disk", mesh, "", "", options.split(), "", 1, 1, {})
+        return sweep_plots.Run(row, {"command": "disk", "method": "lm", "status": status}, [], {})
+
+    runs = [run("h-1-x", "hills:100", "-max_it 9"), run("h-2-x", "hills:200", "-max_it 9"), run("h-1-y", "hills:100", "-max_it 8"),
+            run("h-3-x", "hills:300", "-max_it 9", "not converged"), run("bunny", "bunny"), run("lion", "lion"), run("lion2", "lion")]
+    series = {name: len(members) for name, members in sweep_plots.series_of(runs).items()}
+    assert series == {"h-*-x": 2, "h-1-y": 1, "h-3-x": 1, "bunny": 1, "lion": 1, "lion2": 1}, series
 
 
 def check_stop(kind, code, ranks=1, everywhere=False):
@@ -150,6 +193,8 @@ def check_launcher():
 def check_mistakes():
     """Said in a line, with exit code 2, before anything is run."""
     cases = {
+        HEADER + "a,register,m,,,,1,1,,\n": "register wants two meshes",
+        HEADER + "a,disk,m,,,,1,1,,n\n": "register wants two meshes",
         "name,command\nx,disk\n": "no column mesh",
         HEADER: "has no rows",
         HEADER + "a,disk,m,,,,1,1,\na,disk,m,,,,1,1,\n": "two rows are called a",
@@ -194,6 +239,8 @@ def check_jube():
 def main():
     check_run()
     check_change()
+    check_register()
+    check_series()
     check_stop(signal.SIGUSR1, 75)
     check_stop(signal.SIGINT, 75)
     check_stop(signal.SIGTERM, 75, ranks=2, everywhere=True)
