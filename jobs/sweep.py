@@ -213,7 +213,8 @@ def tell(args, states):
     print(", ".join(f"{len(rows)} {state}" for state, rows in groups.items()))
     for state, rows in groups.items():
         for row in rows if state != "finished" else ():
-            word = Store(args.results, row).complaint() if state == "failed" else ", ".join(row.meshes) if state == "no mesh" else ""
+            words = {"failed": Store(args.results, row).complaint(), "no mesh": ", ".join(row.meshes)}
+            word = words.get(state, "")
             print(f"  {state}: row {row.number}, {row.name}" + (f": {word}" if word else ""))
 
 

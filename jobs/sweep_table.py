@@ -165,8 +165,8 @@ def published(preset):
 def fingerprint(row, meshes):
     """What a row's outcome depends on; if it has changed, the outcome is of another run."""
     contents = [mesh if mesh == TARGET else zlib.crc32(mesh.read_bytes()) for mesh in meshes]
-    return {"command": row.command, "mesh": contents[0] if len(contents) == 1 else contents, "preset": preset_options(find_preset(row.preset)),
-            "options": row.options, "ranks": row.ranks, "threads": row.threads}
+    return {"command": row.command, "mesh": contents if row.mesh_b else contents[0],
+            "preset": preset_options(find_preset(row.preset)), "options": row.options, "ranks": row.ranks, "threads": row.threads}
 
 
 class Store:

@@ -27,7 +27,9 @@ def text_of(name, value, folder):
         return path
     if isinstance(value, (list, tuple, numpy.ndarray)):
         return ",".join(text_of("", one, folder) for one in value)
-    return repr(float(value)) if isinstance(value, (float, numpy.floating)) else os.fspath(value) if is_file(value) else str(value)
+    if isinstance(value, (float, numpy.floating)):
+        return repr(float(value))
+    return os.fspath(value) if is_file(value) else str(value)
 
 
 def words_of(options, folder):
