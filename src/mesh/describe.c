@@ -79,7 +79,7 @@ static const Phrase phrases[] = {
      "{n} vertices belong to no usable {cell}", "harmless: they keep their number and take no part in the map"},
     {EQM_FINDING_NO_INTERIOR_VERTEX, 0, MINDED_BY_NONE, SHOW_ONE, "1 {cell} has all its vertices on the boundary",
      "{n} {cells} have all their vertices on the boundary",
-     "the map cannot preserve their {measure}; -repair splits them"},
+     "their {measure} in the image depends on boundary vertices alone and may not be kept; -repair splits them"},
     {EQM_FINDING_CHORD, 0, MINDED_BY_NONE, SHOW_EDGE, "1 interior edge joins two boundary vertices",
      "{n} interior edges join two boundary vertices", "such edges can fold the map; -repair splits them"},
 };

@@ -87,12 +87,11 @@ static PetscErrorCode DiagnoseLinks(const EqmVicinity *vicinity, PetscBool *on_b
   PetscFunctionReturn(0);
 }
 
-/* One vertex of every connected component, by a finding each. */
-static PetscErrorCode DiagnoseComponents(const EqmVicinity *vicinity, EqmFinding *finding)
+/* Label all local vertices by the lowest input number of their connected component. Collective. */
+PetscErrorCode EqmVicinityLabelComponents(const EqmVicinity *vicinity, PetscInt *label)
 {
   const PetscInt cs = vicinity->cell_size;
   EqmForest forest;
-  PetscInt *label;
 
   PetscFunctionBegin;
   PetscCall(EqmForestCreate(vicinity->num_local, &forest));
@@ -101,15 +100,21 @@ static PetscErrorCode DiagnoseComponents(const EqmVicinity *vicinity, EqmFinding
       (void)EqmForestJoin(&forest, vicinity->cells[cs * c], vicinity->cells[cs * c + a], PETSC_FALSE);
     }
   }
-  PetscCall(PetscMalloc1(vicinity->num_local, &label));
   PetscCall(EqmForestLabel(vicinity->comm, vicinity->ghosts, &forest, vicinity->input, label, NULL, NULL));
+  PetscCall(EqmForestReset(&forest));
+  PetscFunctionReturn(0);
+}
+
+/* One vertex of every connected component, by a finding each. */
+static PetscErrorCode DiagnoseComponents(const EqmVicinity *vicinity, PetscInt *label, EqmFinding *finding)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmVicinityLabelComponents(vicinity, label));
   for (PetscInt v = 0; v < vicinity->num_owned; v++) {
     const PetscBool in_use = (PetscBool)(vicinity->star_start[v] < vicinity->star_start[v + 1]);
 
     if (in_use && label[v] == vicinity->input[v]) EqmFindingAdd(finding, label[v], -1, -1, -1);
   }
-  PetscCall(PetscFree(label));
-  PetscCall(EqmForestReset(&forest));
   PetscFunctionReturn(0);
 }
 
@@ -134,18 +139,19 @@ static PetscErrorCode DiagnoseVicinity(EqmVicinity *vicinity, EqmDiagnosis *diag
 {
   EqmFinding *const finding = diagnosis->finding;
   PetscBool *on_boundary;
+  PetscInt *component;
   PetscInt64 inconsistent;
 
   PetscFunctionBegin;
   PetscCall(EqmDiagnoseDuplicateVertices(vicinity, &finding[EQM_FINDING_DUPLICATE_VERTEX]));
-  PetscCall(PetscMalloc1(vicinity->num_local, &on_boundary));
+  PetscCall(PetscMalloc2(vicinity->num_local, &on_boundary, vicinity->num_local, &component));
   PetscCall(DiagnoseLinks(vicinity, on_boundary, finding, counts));
-  PetscCall(DiagnoseComponents(vicinity, &finding[EQM_FINDING_COMPONENTS]));
+  PetscCall(DiagnoseComponents(vicinity, component, &finding[EQM_FINDING_COMPONENTS]));
   if (counts->boundary_edges) {
     PetscCall(EqmVicinityShareFlags(vicinity, on_boundary));
-    PetscCall(EqmDiagnoseBoundary(vicinity, on_boundary, diagnosis));
+    PetscCall(EqmDiagnoseBoundary(vicinity, on_boundary, component, diagnosis));
   }
-  PetscCall(PetscFree(on_boundary));
+  PetscCall(PetscFree2(on_boundary, component));
   inconsistent = finding[EQM_FINDING_INCONSISTENT_ORIENTATION].count;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inconsistent, 1, MPIU_INT64, MPI_SUM, vicinity->comm));
   if (vicinity->cell_size == 3 && inconsistent) {
@@ -197,18 +203,12 @@ static void Conclude(const EqmSoup soup, const Counts *counts, EqmDiagnosis *dia
   diagnosis->num_boundary_vertices = counts->boundary_vertices;
   diagnosis->num_boundary_edges = counts->boundary_edges;
   diagnosis->num_components = finding[EQM_FINDING_COMPONENTS].count;
-  diagnosis->num_boundary_loops = finding[EQM_FINDING_HOLES].count;
   diagnosis->euler_characteristic = counts->vertices - counts->edges + counts->faces;
   if (soup->cell_size == 4) diagnosis->euler_characteristic -= counts->cells;
   diagnosis->genus = Genus(diagnosis, counts);
   diagnosis->topology = Classify(diagnosis);
 
-  /* one component, one loop are no finding */
-  if (diagnosis->num_components <= 1) finding[EQM_FINDING_COMPONENTS] = (EqmFinding){0};
-  if (diagnosis->num_boundary_loops <= 1)
-    finding[EQM_FINDING_HOLES] = (EqmFinding){0};
-  else
-    finding[EQM_FINDING_HOLES].count--;
+  if (diagnosis->num_components <= 1) finding[EQM_FINDING_COMPONENTS] = (EqmFinding){0}; /* one piece is no finding */
   if (diagnosis->genus > 0) finding[EQM_FINDING_GENUS].count = diagnosis->genus;
   if (soup->cell_size == 3 && counts->cells) {
     finding[EQM_FINDING_CLOSED].count = counts->boundary_edges ? 0 : 1;

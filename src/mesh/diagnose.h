@@ -76,10 +76,11 @@ PETSC_INTERN PetscErrorCode EqmFindingsMerge(MPI_Comm comm, PetscInt num_finding
 PETSC_INTERN PetscErrorCode EqmDiagnoseDuplicateVertices(const EqmVicinity *vicinity, EqmFinding *finding);
 PETSC_INTERN PetscErrorCode EqmDiagnoseCells(EqmSoup soup, const EqmVicinity *vicinity, EqmDiagnosis *diagnosis);
 PETSC_INTERN PetscErrorCode EqmDiagnoseBoundary(const EqmVicinity *vicinity, const PetscBool *on_boundary,
-                                                EqmDiagnosis *diagnosis);
+                                                const PetscInt *component, EqmDiagnosis *diagnosis);
 PETSC_INTERN PetscErrorCode EqmDiagnoseOrientation(const EqmVicinity *vicinity, EqmFinding *finding);
 PETSC_INTERN PetscErrorCode EqmVicinityOrient(const EqmVicinity *vicinity, PetscInt *label, PetscBool *turned,
                                               PetscBool *conflict);
+PETSC_INTERN PetscErrorCode EqmVicinityLabelComponents(const EqmVicinity *vicinity, PetscInt *label);
 PETSC_INTERN PetscErrorCode EqmVicinityShareFlags(const EqmVicinity *vicinity, PetscBool *flag);
 PETSC_INTERN PetscErrorCode EqmVicinityMarkBoundary(const EqmVicinity *vicinity, PetscBool *on_boundary);
 
