@@ -1,4 +1,4 @@
-# Installation: the program, the library, the headers, presets, batch scripts, and two ways to find them: a CMake package (equimap::equimap)
+# Installation: the program, the library, the headers, presets, batch scripts, pages, and two ways to find them: a CMake package (equimap::equimap)
 # and pkg-config (equimap). Included at the end of the main CMakeLists.txt.
 include(CMakePackageConfigHelpers)
 set(EQUIMAP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/equimap)
@@ -16,6 +16,12 @@ foreach(place ${CMAKE_INSTALL_DATADIR}/equimap/python ${EQUIMAP_PYTHON_DIR})
   install(DIRECTORY python/equimap DESTINATION ${place} FILES_MATCHING PATTERN "*.py")
 endforeach()
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/equimap/examples USE_SOURCE_PERMISSIONS)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+if(EQUIMAP_PAGES)
+  install(DIRECTORY ${EQUIMAP_PAGES}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
+  install(FILES ${EQUIMAP_PAGES}/completion/equimap DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+endif()
 install(EXPORT equimapTargets NAMESPACE equimap:: DESTINATION ${EQUIMAP_PACKAGE_DIR})
 
 # A static library does not say what it stands on: its users link that, too.

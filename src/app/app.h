@@ -34,7 +34,6 @@ PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmSta
 PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
 
-
 /* How the work is laid out: -threads, which main takes before any command (asked again to be listed by --help), and
    what belongs to the mesh. Collective. */
 PETSC_INTERN PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject);

@@ -94,6 +94,7 @@ static PetscErrorCode AddOption(const char *format, const char *text)
   if (option->kind == EQM_OPTION_CHOICE) {
     PetscCall(TakePurpose(close + 1, option));
     option->purpose[strcspn(option->purpose, "(")] = '\0'; /* "(choose one of)" */
+    for (size_t n = strlen(option->purpose); n > 0 && option->purpose[n - 1] == ' '; n--) option->purpose[n - 1] = '\0';
   } else if (!open || close) {
     PetscCall(TakePurpose(close ? close + 1 : strchr(text, ':'), option));
   }
@@ -222,5 +223,5 @@ const char *EqmOptionValueName(const EqmOption *option)
   for (size_t k = 0; k < sizeof(of_files) / sizeof(of_files[0]) && option->kind == EQM_OPTION_TEXT; k++) {
     if (strstr(option->purpose, of_files[k])) return "FILE";
   }
-  return names[option->kind];
+  return strcmp(option->name, "-log_view") ? names[option->kind] : "[:FILE]";
 }

@@ -43,11 +43,7 @@ static void PrintOption(const EqmOption *option)
   const char *const value = EqmOptionValueName(option), *purpose;
 
   (void)EqmOptionGroup(option, &purpose);
-  if (!strcmp(option->name, "-log_view")) {
-    printf("  -log_view [:FILE]");
-  } else {
-    printf("  %s%s%s", option->name, value[0] ? " " : "", value);
-  }
+  printf("  %s%s%s", option->name, value[0] ? " " : "", value);
   if (option->initial[0]) printf(" [%s]", option->initial);
   printf("\n");
   PrintWrapped(purpose);

@@ -69,14 +69,31 @@ void EqmHelpMan(const EqmCatalogue *catalogue, const char *command, const char *
   printf(".SH SEE ALSO\n.BR equimap (1)\n");
 }
 
+/* The names that a purpose like "the first map: harmonic, tutte" ends with, if it is of that form; else "". */
+static const char *NamesIn(const EqmOption *option)
+{
+  const char *const colon = strchr(option->purpose, ':'), *const names = colon ? colon + 1 : "";
+
+  if (option->kind != EQM_OPTION_TEXT || !strchr(names, ',')) return "";
+  for (const char *c = names + strspn(names, " "); *c; c++) {
+    if (*c == ' ' && c[-1] != ',') return "";
+  }
+  return names;
+}
+
 /* One line per option, "COMMAND -name KIND CHOICES": what completion needs. */
 void EqmHelpWords(const EqmCatalogue *catalogue, const char *command)
 {
   for (int k = 0; k < catalogue->num_options; k++) {
     const EqmOption *const o = &catalogue->option[k];
     const char *const value = EqmOptionValueName(o);
-    printf("%s %s %s%s%s\n", command, o->name, value[0] ? value : "FLAG", o->choices ? " " : "",
-           o->choices ? o->choices : "");
+
+    printf("%s %s %s", command, o->name, value[0] ? value : "FLAG");
+    if (o->choices) printf(" %s", o->choices);
+    for (const char *c = NamesIn(o); *c; c++) {
+      if (*c != ',') putchar(*c);
+    }
+    printf("\n");
   }
 }
 

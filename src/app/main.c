@@ -1,35 +1,13 @@
 /* equimap COMMAND ARGUMENTS -options: find the command, hand over, turn its end into an exit code. */
-#include "base/nearest.h"
 #include "catalogue.h"
 #include "commandline.h"
+#include "commands.h"
 #include <omp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-typedef struct {
-  const char *name;
-  EqmCommand run;
-  const char *usage, *purpose;
-} CommandRow;
-
-static const CommandRow commands[] = {
-    {"disk", EqmCommandMap, "MESH -o OUT", "area-preserving map of a disk-type surface to the unit disk"},
-    {"square", EqmCommandMap, "MESH -o OUT", "the same to the unit square"},
-    {"sphere", EqmCommandMap, "MESH -o OUT", "area-preserving map of a closed genus-0 surface to the unit sphere"},
-    {"conformal", EqmCommandMap, "MESH -o OUT",
-     "angle-preserving map: closed surface to the unit sphere, disk-type to the unit disk"},
-    {"ball", EqmCommandMap, "MESH -o OUT", "volume-preserving map of a solid ball of tetrahedra to the unit ball"},
-    {"register", EqmCommandRegister, "A B -o OUT", "measure-preserving correspondence between two surfaces or solids"},
-    {"check", EqmCommandCheck, "MESH", "diagnose a mesh: what it is, what is wrong, what each command would say"},
-    {"measure", EqmCommandMeasure, "MESH MAP", "distortion and folds of any map, also one made elsewhere"},
-    {"convert", EqmCommandConvert, "IN OUT", "between mesh formats"},
-    {"generate", EqmCommandGenerate, "SHAPE -n N -o OUT", "test surfaces and solids of any size"},
-    {"report", EqmCommandReport, "RESULT -o FILE", "pictures and plots of a result"},
-};
-enum { NUM_COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 
 /* Is there a file of that name that rank 0 can read? */
 static PetscErrorCode CheckReadable(const char *file)
@@ -79,18 +57,6 @@ static PetscErrorCode InsertOptions(const EqmCommandLine *line, int argc, char *
   PetscFunctionReturn(0);
 }
 
-static void PrintUsage(void)
-{
-  printf("equimap %s: area-, volume- and angle-preserving maps of triangle and tetrahedral meshes\n\n"
-         "usage: equimap COMMAND ARGUMENTS [-options]      (alone or under mpirun -n N)\n\n",
-         EqmVersion());
-  for (int k = 0; k < NUM_COMMANDS; k++)
-    printf("  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage, commands[k].purpose);
-  printf("\nequimap COMMAND --help lists the options of a command. To begin with:\n"
-         "  equimap generate hills -n 20000 -o hills.obj\n"
-         "  equimap disk hills.obj -o hills.h5 && equimap report hills.h5 -o hills.png\n");
-}
-
 /* Unless told otherwise: the cores that this rank may use, shared with the ranks of the same node where nothing binds
    them to cores of their own. */
 static PetscErrorCode DefaultThreads(PetscInt *threads)
@@ -117,6 +83,7 @@ static PetscErrorCode SetThreads(void)
   PetscFunctionBegin;
   PetscCall(DefaultThreads(&threads));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-threads", &threads, &given));
+  if (given && threads == -1) PetscCall(DefaultThreads(&threads));
   if (given && threads < 1)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-threads %" PetscInt_FMT ": give 1 or more", threads);
   omp_set_num_threads((int)threads);
@@ -124,7 +91,7 @@ static PetscErrorCode SetThreads(void)
 }
 
 /* One rank prints the options, in the form that was asked for. */
-static PetscErrorCode PrintHelp(const CommandRow *row, const EqmCommandLine *line)
+static PetscErrorCode PrintHelp(const EqmCommandRow *row, const EqmCommandLine *line)
 {
   const char *const format = line->help_format ? line->help_format : "text";
   static const char *const formats[] = {"text", "man", "json", "words"};
@@ -150,28 +117,13 @@ static PetscErrorCode PrintHelp(const CommandRow *row, const EqmCommandLine *lin
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FindCommand(const char *name, const CommandRow **row)
-{
-  const char *names[NUM_COMMANDS];
-  char hint[128];
-
-  PetscFunctionBegin;
-  for (int k = 0; k < NUM_COMMANDS; k++) {
-    names[k] = commands[k].name;
-    *row = &commands[k];
-    if (!strcmp(name, commands[k].name)) PetscFunctionReturn(0);
-  }
-  PetscCall(EqmDidYouMean(name, names, NUM_COMMANDS, hint, sizeof(hint)));
-  EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "there is no command '%s'%s; equimap --help lists the commands", name, hint);
-}
-
 static PetscErrorCode Run(EqmCommandLine *line, EqmStatus *status)
 {
-  const CommandRow *row;
+  const EqmCommandRow *row;
   EqmCatalogue catalogue;
 
   PetscFunctionBegin;
-  PetscCall(FindCommand(line->command, &row));
+  PetscCall(EqmCommandFind(line->command, &row));
   PetscCall(EqmCatalogueCreate(row->run, line, &catalogue));
   line->catalogue = &catalogue;
   if (line->help) {
@@ -201,18 +153,6 @@ static int RankOfLauncher(PetscBool *launched)
   return 0;
 }
 
-/* What needs neither MPI nor PETSc. */
-static EqmStatus Introduce(const EqmCommandLine *line, int rank)
-{
-  if (rank == 0 && line->version) {
-    printf("equimap %s (commit %s, PETSc %d.%d.%d)\n", EqmVersion(), EqmCommit(), PETSC_VERSION_MAJOR,
-           PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
-  } else if (rank == 0) {
-    PrintUsage();
-  }
-  return line->version || line->help ? EQM_STATUS_CONVERGED : EQM_STATUS_USAGE;
-}
-
 int main(int argc, char **argv)
 {
   EqmCommandLine line = {0};
@@ -224,7 +164,7 @@ int main(int argc, char **argv)
   char **options;
 
   if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return EQM_STATUS_INTERNAL;
-  if (line.version || !line.command) return Introduce(&line, rank);
+  if (line.version || !line.command) return EqmIntroduce(&line, rank);
   /* alone, Open MPI would start a daemon first, which takes longer than a small map */
   if (!launched) (void)setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   argc = num_options;

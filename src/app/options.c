@@ -2,7 +2,6 @@
    work starts, not after. */
 #include "base/nearest.h"
 #include "catalogue.h"
-#include <omp.h>
 #include <string.h>
 #include <strings.h>
 
@@ -50,11 +49,11 @@ static PetscBool IsTrusted(const char *name)
 
 PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject)
 {
-  PetscInt threads = omp_get_max_threads();
+  PetscInt threads = -1; /* main has taken it */
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsInt("-threads",
-                            "threads per rank; else OMP_NUM_THREADS, else all the cores that the rank may use", NULL,
+                            "threads per rank (-1: OMP_NUM_THREADS, else all the cores that the rank may use)", NULL,
                             threads, &threads, NULL));
   PetscCall(EqmMeshHelpOptions(PetscOptionsObject));
   PetscFunctionReturn(0);

@@ -16,6 +16,9 @@ run() { mpirun -n 2 --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 "
 cmake --install "$build" --prefix "$work/installed" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
 installed=$work/installed
 "$installed/bin/equimap" --version
+for page in share/man/man1/equimap.1 share/man/man1/equimap-disk.1 share/bash-completion/completions/equimap; do
+  [ -s "$installed/$page" ] || { echo "$page is not installed"; exit 1; }
+done
 
 cmake -S "$source_folder" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$installed" >"$work/cmake.log" || { cat "$work/cmake.log"; exit 1; }
 cmake --build "$work/cmake" >"$work/make.log" || { cat "$work/make.log"; exit 1; }
