@@ -19,6 +19,15 @@ typedef struct {
   PetscReal mean, sd, min, max, p25, p50, p75, p95;
 } EqmStatistics;
 
+/* Ratios weighted by the measure of their cells, which slivers hardly change. The mean is 1. */
+typedef struct {
+  PetscReal sd;                      /* sqrt(sum w (r - 1)^2 / sum w), which is sqrt(energy / image_measure) */
+  PetscReal p05, p25, p50, p75, p95; /* the ratio up to which that share of the measure lies */
+  PetscInt64 outliers;               /* cells with |r - 1| > 10 sd */
+  PetscReal outlier_share;           /* their share of the measure, at most 1/100 */
+  PetscReal cell_sd_without;         /* standard deviation over all other cells, unweighted */
+} EqmWeightedRatio;
+
 /* Bins of the histogram of angle errors, a quarter of a degree each. */
 enum { EQM_NUM_ANGLE_BINS = 720 };
 
@@ -29,6 +38,7 @@ typedef struct {
   PetscReal mesh_measure;                         /* W, density included */
   EqmStatistics ratio;                            /* r = (a/w) (W/A) */
   EqmStatistics ratio_error;                      /* |r - 1| */
+  EqmWeightedRatio weighted_ratio;                /* r, weighted by w */
   EqmStatistics angle_error;                      /* degrees per corner; p50 is the median; triangles only */
   PetscInt64 angle_histogram[EQM_NUM_ANGLE_BINS]; /* corners whose angle error lies in the bin; triangles only */
   EqmStatistics quasiconformal;                   /* ratio of singular values, >= 1; triangles only */
@@ -151,6 +161,9 @@ PETSC_EXTERN PetscErrorCode EqmMapWrite(EqmMap map, const char *files);
 PETSC_EXTERN PetscErrorCode EqmMapCheckWritable(MPI_Comm comm, const char *files);
 /* EqmMapWriteSummary - the figures of a run as JSON. Collective; rank 0 writes. Errors: EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteSummary(EqmMap map, const char *file);
+/* EqmMapViewRatios - print the lines of a table for people that say how far the ratios are from one: weighted by
+   measure first, then over cells, and what slivers add. Collective; rank 0 prints. */
+PETSC_EXTERN PetscErrorCode EqmMapViewRatios(EqmMap map);
 /* EqmMapWriteHistory - a row per iteration as CSV with a header, all digits. Collective; rank 0 writes. Errors:
    EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteHistory(EqmMap map, const char *file);

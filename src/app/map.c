@@ -187,9 +187,7 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
                         cost->threads, cost->threads == 1 ? "" : "s"));
   if (options->input.quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(status), message));
   PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double) final, (double)initial));
-  PetscCall(PetscPrintf(comm, "  %-12s  sd %.3e   min %.4f   median %.6f   max %.4f\n",
-                        is_solid ? "volume ratio" : "area ratio", (double)d->ratio.sd, (double)d->ratio.min,
-                        (double)d->ratio.p50, (double)d->ratio.max));
+  PetscCall(EqmMapViewRatios(map));
   if (!is_solid)
     PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean,
                           (double)d->angle_error.p50));

@@ -56,6 +56,7 @@ PetscErrorCode EqmH5PutInteger(EqmH5 h5, const char *name, PetscInt64 value)
   PetscFunctionReturn(0);
 }
 
+/* UTF-8 of that many bytes, or of any length: H5T_VARIABLE. */
 static hid_t TextType(size_t length)
 {
   const hid_t type = H5Tcopy(H5T_C_S1);
@@ -67,8 +68,8 @@ static hid_t TextType(size_t length)
   return type;
 }
 
-/* Write a root attribute, UTF-8 text of fixed length, with rank 0's text, cut at 60,000 bytes. Errors: EQM_ERR_IO.
-   Collective. */
+/* Write a root attribute, UTF-8 text, with rank 0's text, cut at 60,000 bytes. Readers such as h5py take a text of
+   variable length for a string, one of fixed length for bytes. Errors: EQM_ERR_IO. Collective. */
 PetscErrorCode EqmH5PutText(EqmH5 h5, const char *name, const char *text)
 {
   PetscMPIInt length = (PetscMPIInt)PetscMin(strlen(text), LONGEST_TEXT) + 1;
@@ -81,9 +82,9 @@ PetscErrorCode EqmH5PutText(EqmH5 h5, const char *name, const char *text)
   PetscCall(PetscCalloc1((size_t)length, &copy));
   if (h5->rank == 0) memcpy(copy, text, (size_t)length - 1);
   PetscCallMPI(MPI_Bcast(copy, length, MPI_CHAR, 0, h5->comm));
-  type = TextType((size_t)length);
+  type = TextType(h5->fixed_texts ? (size_t)length : H5T_VARIABLE);
   error = EqmH5Agree(h5, (PetscBool)(type >= 0), name);
-  if (!error) error = Put(h5, name, type, type, copy);
+  if (!error) error = Put(h5, name, type, type, h5->fixed_texts ? (const void *)copy : (const void *)&copy);
   if (type >= 0) (void)H5Tclose(type);
   PetscCall(PetscFree(copy));
   PetscCall(error);
@@ -125,7 +126,32 @@ PetscErrorCode EqmH5GetInteger(EqmH5 h5, const char *name, PetscInt64 fallback, 
   PetscFunctionReturn(0);
 }
 
-/* Read a root attribute of fixed-length text; `fallback` where there is none. Collective. */
+/* The text of an attribute of variable length; left alone where it cannot be read. */
+static PetscErrorCode ReadVariable(hid_t attribute, char *text, size_t length)
+{
+  const hid_t type = TextType(H5T_VARIABLE);
+  char *found = NULL;
+
+  PetscFunctionBegin;
+  if (type >= 0 && H5Aread(attribute, type, &found) >= 0 && found) PetscCall(PetscStrncpy(text, found, length));
+  if (found) (void)H5free_memory(found);
+  if (type >= 0) (void)H5Tclose(type);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadFixed(hid_t attribute, hid_t type, char *text, size_t length)
+{
+  const size_t size = H5Tget_size(type);
+  char *buffer;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(size + 1, &buffer));
+  if (H5Aread(attribute, type, buffer) >= 0) PetscCall(PetscStrncpy(text, buffer, length));
+  PetscCall(PetscFree(buffer));
+  PetscFunctionReturn(0);
+}
+
+/* Read a root attribute of text, of fixed or variable length; `fallback` where there is none. Collective. */
 PetscErrorCode EqmH5GetText(EqmH5 h5, const char *name, const char *fallback, char *text, size_t length)
 {
   hid_t attribute, type;
@@ -136,12 +162,11 @@ PetscErrorCode EqmH5GetText(EqmH5 h5, const char *name, const char *fallback, ch
   attribute = H5Aopen(h5->file, name, H5P_DEFAULT);
   if (attribute < 0) PetscFunctionReturn(0);
   type = H5Aget_type(attribute);
-  if (type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
-    const size_t size = H5Tget_size(type);
-    char *buffer;
-    PetscCall(PetscCalloc1(size + 1, &buffer));
-    if (H5Aread(attribute, type, buffer) >= 0) PetscCall(PetscStrncpy(text, buffer, length));
-    PetscCall(PetscFree(buffer));
+  if (type >= 0 && H5Tget_class(type) == H5T_STRING) {
+    if (H5Tis_variable_str(type) > 0)
+      PetscCall(ReadVariable(attribute, text, length));
+    else
+      PetscCall(ReadFixed(attribute, type, text, length));
   }
   if (type >= 0) (void)H5Tclose(type);
   (void)H5Aclose(attribute);

@@ -11,8 +11,9 @@ typedef struct _p_EqmH5 *EqmH5;
 struct _p_EqmH5 {
   MPI_Comm comm;
   PetscMPIInt rank;
-  hid_t file, transfer;          /* the file; the property list of collective transfers */
-  PetscBool writing;             /* a new file, under its temporary name until it is committed */
+  hid_t file, transfer;  /* the file; the property list of collective transfers */
+  PetscBool fixed_texts; /* texts have a fixed length and stand in headers, which have checksums; see EqmH5PutText */
+  PetscBool writing;     /* a new file, under its temporary name until it is committed */
   char name[PETSC_MAX_PATH_LEN]; /* the name that the user gave */
   EqmAtomicFile atomic;          /* where a new file grows; rank 0 keeps it, all know its temporary name */
   int reserved;                  /* rank 0: descriptor of disk space that is reserved for the headers; -1: none */

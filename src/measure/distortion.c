@@ -4,6 +4,7 @@
 #include "geometry/simplex.h"
 #include "measure/angles.h"
 #include "measure/quantile.h"
+#include "measure/weighted.h"
 #include "store/map_private.h"
 
 /* Signed measure of every local cell; a mirrored map is turned: folds are counted against the majority. */
@@ -101,6 +102,7 @@ PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x)
   if (mesh->cell_size == 3) PetscCall(StoreConformalFactor(map, mesh, a));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) a[c] /= mesh->weight[c] * totals.total;
   PetscCall(StoreRatios(map, mesh, a));
+  PetscCall(EqmWeightedRatioOf(mesh->comm, n, a, mesh->weight, &map->distortion.weighted_ratio));
   PetscCall(PetscArraycpy(sample, a, n));
   PetscCall(EqmStatisticsOf(mesh->comm, n, sample, &map->distortion.ratio));
   for (PetscInt c = 0; c < n; c++) sample[c] = PetscAbsReal(a[c] - 1.);

@@ -1,6 +1,7 @@
 /* A result file, read back to be looked at. */
 #include "picture.h"
 #include "h5/h5.h"
+#include "store/store.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -172,6 +173,7 @@ static PetscErrorCode Fill(EqmH5 h5, EqmResult *result)
             "cannot read '%s': it is not a result that was written to its end; give the .h5 file of a map command",
             h5->name);
   }
+  PetscCall(EqmCheckResultVersion(h5));
   PetscCall(LoadAttributes(h5, result));
   PetscCall(LoadReals(h5, "/mesh/vertices", 3, &result->num_vertices, &result->vertices));
   PetscCall(LoadCells(h5, result));

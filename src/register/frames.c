@@ -98,7 +98,7 @@ PetscErrorCode EqmAddFrames(EqmRegistration r)
     PetscCall(EqmMapAddReals(r->map, path, soup->num_vertices, soup->vertex_start, count, 3, points));
     PetscCall(CountFolds(r, TimeOf(r, f), &folds));
     PetscCall(PetscSNPrintf(key, sizeof(key), "register.frames.folds.%03" PetscInt_FMT, f));
-    PetscCall(EqmMapAddFigure(r->map, key, (PetscReal)folds));
+    PetscCall(EqmMapAddCount(r->map, key, folds));
     r->figures.most_frame_folds = PetscMax(r->figures.most_frame_folds, folds);
   }
   PetscFunctionReturn(0);

@@ -64,7 +64,7 @@ static PetscErrorCode AddLandmarkFigures(EqmRegistration r)
   const EqmRegisterFigures *const f = &r->figures;
 
   PetscFunctionBegin;
-  PetscCall(EqmMapAddFigure(r->map, "register.landmarks.count", (PetscReal)r->landmarks.num));
+  PetscCall(EqmMapAddCount(r->map, "register.landmarks.count", r->landmarks.num));
   if (!r->landmarks.num) PetscFunctionReturn(0);
   PetscCall(EqmMapAddFigure(r->map, "register.landmarks.error.mean", f->landmark_mean));
   PetscCall(EqmMapAddFigure(r->map, "register.landmarks.error.max", f->landmark_max));
@@ -80,9 +80,29 @@ static PetscErrorCode AddClamped(EqmRegistration r, const char *name, EqmLocatio
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(key, sizeof(key), "register.clamped.%s.count", name));
-  PetscCall(EqmMapAddFigure(r->map, key, (PetscReal)location->num_clamped));
+  PetscCall(EqmMapAddCount(r->map, key, location->num_clamped));
   PetscCall(PetscSNPrintf(key, sizeof(key), "register.clamped.%s.most", name));
   PetscCall(EqmMapAddFigure(r->map, key, location->most_distant));
+  PetscFunctionReturn(0);
+}
+
+/* B as it was given: /register/cell names its cells. */
+static PetscErrorCode AddMeshOfB(EqmRegistration r)
+{
+  const EqmSoup soup = r->b.soup;
+  const PetscInt num_vertices = soup->vertex_end - soup->vertex_start, num_cells = soup->cell_end - soup->cell_start;
+  PetscReal *vertices;
+  PetscInt64 *cells;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * num_vertices, &vertices));
+  PetscCall(PetscArraycpy(vertices, soup->vertices, 3 * num_vertices));
+  PetscCall(
+      EqmMapAddReals(r->map, "/mesh_b/vertices", soup->num_vertices, soup->vertex_start, num_vertices, 3, vertices));
+  PetscCall(PetscMalloc1(soup->cell_size * num_cells, &cells));
+  for (PetscInt k = 0; k < soup->cell_size * num_cells; k++) cells[k] = soup->cells[k];
+  PetscCall(
+      EqmMapAddIntegers(r->map, "/mesh_b/cells", soup->num_cells, soup->cell_start, num_cells, soup->cell_size, cells));
   PetscFunctionReturn(0);
 }
 
@@ -93,12 +113,12 @@ static PetscErrorCode AddFiguresOfB(EqmRegistration r)
 
   PetscFunctionBegin;
   PetscCall(EqmMapAddText(r->map, "register.b.file", r->b.soup->file));
-  PetscCall(EqmMapAddFigure(r->map, "register.b.vertices", r->b.soup->num_vertices));
-  PetscCall(EqmMapAddFigure(r->map, "register.b.cells", r->b.soup->num_cells));
+  PetscCall(EqmMapAddCount(r->map, "register.b.vertices", r->b.soup->num_vertices));
+  PetscCall(EqmMapAddCount(r->map, "register.b.cells", r->b.soup->num_cells));
   PetscCall(EqmMapAddFigure(r->map, "register.b.measure", r->b.map->distortion.mesh_measure));
   PetscCall(EqmMapAddFigure(r->map, "register.b.energy", f->energy_b));
-  PetscCall(EqmMapAddFigure(r->map, "register.b.folds", (PetscReal)f->folds_b));
-  if (r->kind == EQM_IMAGE_SPACE) PetscCall(EqmMapAddFigure(r->map, "register.folds", (PetscReal)f->folds_phi));
+  PetscCall(EqmMapAddCount(r->map, "register.b.folds", f->folds_b));
+  if (r->kind == EQM_IMAGE_SPACE) PetscCall(EqmMapAddCount(r->map, "register.folds", f->folds_phi));
   PetscCall(EqmMapAddFigure(r->map, "register.dissimilarity", f->dissimilarity));
   PetscCall(EqmMapAddFigure(r->map, "register.dissimilarity_rigid", f->dissimilarity_rigid));
   PetscCall(AddClamped(r, "forward", r->forward));
@@ -115,6 +135,7 @@ PetscErrorCode EqmAddToResult(EqmRegistration r)
   PetscCall(AddReals(r, &r->a, "/register/target", r->dim, 0., r->a.x));
   if (r->bare) PetscFunctionReturn(0);
   PetscCall(AddFiguresOfB(r));
+  PetscCall(AddMeshOfB(r));
   PetscCall(AddLocation(r, &r->a, &r->b, "register", r->forward));
   PetscCall(AddReals(r, &r->b, "/inverse/coordinates", 3, 0., r->inverse_image));
   PetscCall(AddReals(r, &r->b, "/inverse/target", r->dim, 0., r->b.x));

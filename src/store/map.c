@@ -60,6 +60,21 @@ static PetscErrorCode CheckCount(EqmSoup soup, PetscInt64 count, const char *fil
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmCheckResultVersion(EqmH5 h5)
+{
+  PetscInt64 version;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5GetInteger(h5, "format_version", 1, &version));
+  if (version > EQM_RESULT_VERSION) {
+    EqmFail(h5->comm, EQM_ERR_IO,
+            "cannot read '%s': its layout is of version %" PetscInt64_FMT
+            ", this equimap (%s) knows them up to version %d; use a newer one",
+            h5->name, version, EqmVersion(), EQM_RESULT_VERSION);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* The shape of /map/coordinates in an open result file. */
 static PetscErrorCode CheckResult(EqmH5 h5, EqmSoup soup, PetscInt64 *dim)
 {
@@ -72,6 +87,7 @@ static PetscErrorCode CheckResult(EqmH5 h5, EqmSoup soup, PetscInt64 *dim)
     EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': it holds no /map/coordinates, so it is not a result", h5->name);
   PetscCall(EqmH5GetInteger(h5, "complete", 1, &complete)); /* a map made elsewhere has no such mark */
   if (!complete) EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': it was not written to its end", h5->name);
+  PetscCall(EqmCheckResultVersion(h5));
   PetscCall(EqmH5GetShape(h5, "/map/coordinates", &count, dim));
   if (*dim != 2 && *dim != 3) {
     EqmFail(h5->comm, EQM_ERR_IO,

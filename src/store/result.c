@@ -53,14 +53,21 @@ static const struct {
                  {"ratio_min", offsetof(struct _p_EqmMap, distortion.ratio.min)},
                  {"ratio_max", offsetof(struct _p_EqmMap, distortion.ratio.max)},
                  {"ratio_error_mean", offsetof(struct _p_EqmMap, distortion.ratio_error.mean)},
-                 {"angle_error_mean", offsetof(struct _p_EqmMap, distortion.angle_error.mean)},
-                 {"angle_error_median", offsetof(struct _p_EqmMap, distortion.angle_error.p50)},
-                 {"angle_error_max", offsetof(struct _p_EqmMap, distortion.angle_error.max)},
-                 {"angle_error_sd", offsetof(struct _p_EqmMap, distortion.angle_error.sd)},
-                 {"quasiconformal_mean", offsetof(struct _p_EqmMap, distortion.quasiconformal.mean)},
-                 {"quasiconformal_median", offsetof(struct _p_EqmMap, distortion.quasiconformal.p50)},
-                 {"quasiconformal_max", offsetof(struct _p_EqmMap, distortion.quasiconformal.max)},
-                 {"seconds_total", offsetof(struct _p_EqmMap, cost.total_seconds)}};
+                 {"ratio_weighted_sd", offsetof(struct _p_EqmMap, distortion.weighted_ratio.sd)},
+                 {"ratio_weighted_p05", offsetof(struct _p_EqmMap, distortion.weighted_ratio.p05)},
+                 {"ratio_weighted_p25", offsetof(struct _p_EqmMap, distortion.weighted_ratio.p25)},
+                 {"ratio_weighted_p50", offsetof(struct _p_EqmMap, distortion.weighted_ratio.p50)},
+                 {"ratio_weighted_p75", offsetof(struct _p_EqmMap, distortion.weighted_ratio.p75)},
+                 {"ratio_weighted_p95", offsetof(struct _p_EqmMap, distortion.weighted_ratio.p95)},
+                 {"ratio_outlier_share", offsetof(struct _p_EqmMap, distortion.weighted_ratio.outlier_share)},
+                 {"seconds_total", offsetof(struct _p_EqmMap, cost.total_seconds)}},
+  angle_reals[] = {{"angle_error_mean", offsetof(struct _p_EqmMap, distortion.angle_error.mean)},
+                   {"angle_error_median", offsetof(struct _p_EqmMap, distortion.angle_error.p50)},
+                   {"angle_error_max", offsetof(struct _p_EqmMap, distortion.angle_error.max)},
+                   {"angle_error_sd", offsetof(struct _p_EqmMap, distortion.angle_error.sd)},
+                   {"quasiconformal_mean", offsetof(struct _p_EqmMap, distortion.quasiconformal.mean)},
+                   {"quasiconformal_median", offsetof(struct _p_EqmMap, distortion.quasiconformal.p50)},
+                   {"quasiconformal_max", offsetof(struct _p_EqmMap, distortion.quasiconformal.max)}};
 #define LENGTH(table) ((int)(sizeof(table) / sizeof((table)[0])))
 
 /* And the histogram; `edges` has one entry more. */
@@ -144,12 +151,18 @@ static PetscErrorCode PutProvenance(EqmH5 h5, EqmMap map)
 {
   PetscFunctionBegin;
   PetscCall(EqmH5PutProvenance(h5, map->soup->file, map->cost.ranks));
+  PetscCall(EqmH5PutInteger(h5, "format_version", EQM_RESULT_VERSION));
   PetscCall(EqmH5PutText(h5, "command", map->command));
   PetscCall(EqmH5PutText(h5, "method", map->method));
   PetscCall(EqmH5PutText(h5, "linear_solver", map->linear_solver));
   PetscCall(EqmH5PutInteger(h5, "mesh_checksum", map->soup->checksum));
   PetscCall(EqmH5PutInteger(h5, "threads", map->cost.threads));
   PetscFunctionReturn(0);
+}
+
+static const PetscReal *RealAt(EqmMap map, size_t offset)
+{
+  return (const PetscReal *)((const char *)map + offset);
 }
 
 /* How it went. */
@@ -162,9 +175,12 @@ static PetscErrorCode PutOutcome(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5PutInteger(h5, "iterations", map->iterations));
   PetscCall(EqmH5PutInteger(h5, "folds", map->distortion.folds));
   if (map->soup->cell_size == 4) PetscCall(EqmH5PutInteger(h5, "boundary_folds", map->boundary_folds));
+  PetscCall(EqmH5PutInteger(h5, "ratio_outliers", map->distortion.weighted_ratio.outliers));
   for (int k = 0; k < LENGTH(map_reals); k++) {
-    const PetscReal *value = (const PetscReal *)((const char *)map + map_reals[k].offset);
-    PetscCall(EqmH5PutReal(h5, map_reals[k].path, *value));
+    PetscCall(EqmH5PutReal(h5, map_reals[k].path, *RealAt(map, map_reals[k].offset)));
+  }
+  for (int k = 0; k < LENGTH(angle_reals) && map->soup->cell_size == 3; k++) {
+    PetscCall(EqmH5PutReal(h5, angle_reals[k].path, *RealAt(map, angle_reals[k].offset)));
   }
   for (PetscInt k = 0; k < map->num_figures; k++) {
     const EqmMapFigure *const figure = &map->figures[k];

@@ -96,6 +96,7 @@ PetscErrorCode EqmStateSave(EqmMesh mesh, const char *file, EqmStateVisit visit,
   PetscCall(EqmStatePreviousName(file, previous, sizeof(previous)));
   PetscCall(EqmStateCreate(mesh, EQM_STATE_ANNOUNCE, &state));
   error = EqmH5Create(mesh->comm, file, &state->h5);
+  if (!error) state->h5->fixed_texts = PETSC_TRUE; /* damage to a checkpoint must be found */
   if (!error) error = Fill(state, visit, context);
   if (!error) error = EqmH5KeepPrevious(state->h5, previous);
   if (!error) error = EqmH5CommitBegin(state->h5);

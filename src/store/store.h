@@ -3,6 +3,13 @@
 #define EQM_STORE_H
 
 #include <equimap/map.h>
+#include "h5/h5.h"
+
+/* Version of the layout of result files, their attribute format_version; files without it are of version 1, whose texts
+   are of fixed length and which have fields of angles, all zero, for solids, too. */
+#define EQM_RESULT_VERSION 2
+/* Fail if a result was written in a layout that this library does not know. Collective. Errors: EQM_ERR_IO. */
+PETSC_INTERN PetscErrorCode EqmCheckResultVersion(EqmH5 h5);
 
 /* Does a name end in `suffix`, in small or capital letters? Not collective. */
 PETSC_INTERN PetscBool EqmHasSuffix(const char *name, const char *suffix);

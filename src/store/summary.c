@@ -78,6 +78,21 @@ static void AddPercentiles(cJSON *object, const EqmStatistics *statistics)
   AddNumber(object, "p95", statistics->p95);
 }
 
+static void AddWeightedRatio(cJSON *root, const EqmWeightedRatio *weighted)
+{
+  cJSON *group = cJSON_AddObjectToObject(root, "ratio_weighted");
+
+  AddNumber(group, "sd", weighted->sd);
+  AddNumber(group, "p05", weighted->p05);
+  AddNumber(group, "p25", weighted->p25);
+  AddNumber(group, "p50", weighted->p50);
+  AddNumber(group, "p75", weighted->p75);
+  AddNumber(group, "p95", weighted->p95);
+  AddCount(group, "outliers", weighted->outliers);
+  AddNumber(group, "outlier_share", weighted->outlier_share);
+  AddNumber(group, "cell_sd_without_outliers", weighted->cell_sd_without);
+}
+
 /* Angles mean something on triangles only: null elsewhere. */
 static void AddAngle(cJSON *object, const char *key, PetscBool known, PetscReal value)
 {
@@ -107,6 +122,7 @@ static void AddQuality(cJSON *root, EqmMap map)
   AddNumber(group, "mean", distortion->ratio_error.mean);
   AddNumber(group, "sd", distortion->ratio_error.sd);
   AddPercentiles(group, &distortion->ratio_error);
+  AddWeightedRatio(root, &distortion->weighted_ratio);
   group = cJSON_AddObjectToObject(root, "angle_error_deg");
   AddAngle(group, "mean", flat, distortion->angle_error.mean);
   AddAngle(group, "median", flat, distortion->angle_error.p50);

@@ -36,7 +36,10 @@ def check_file(path, vertices, cells, density, truth_of):
         attributes = {name: value for name, value in result.attrs.items()}
         for name in ("version", "git_commit", "options", "method", "mesh_file", "mesh_checksum", "ranks", "threads", "status", "date"):
             assert name in attributes, f"no attribute {name}"
-        assert int(attributes["complete"]) == 1
+        assert int(attributes["complete"]) == 1 and attributes["format_version"] == 2
+        assert attributes["command"] in ("disk", "square") and attributes["status"] in ("converged", "not converged")
+        assert attributes["folds"] == 0 and isinstance(attributes["ratio_outliers"], numpy.int64)
+        close(attributes["ratio_weighted_sd"], truth["ratio_weighted"]["sd"], 1e-8, "weighted sd")
         history = {name: result["/history/" + name][...] for name in result["/history"]}
     return image, truth, history
 
@@ -48,7 +51,7 @@ def check_summary(summary, truth, program, code):
     close(mesh["measure"], truth["measure"], what="measure")
     close(summary["energy"]["final"], truth["energy"], 1e-7, "energy")
     assert summary["energy"]["final"] < summary["energy"]["initial"]
-    for group in ("ratio", "ratio_error"):
+    for group in ("ratio", "ratio_error", "ratio_weighted"):
         for name, value in summary[group].items():
             close(value, truth[group][name], 1e-8, f"{group}.{name}")
     for name, value in summary["angle_error_deg"].items():

@@ -62,6 +62,17 @@ def statistics(values):
             "p25": p25, "p50": p50, "p75": p75, "p95": p95}
 
 
+def weighted_statistics(ratio, weight):
+    """Ratios weighted by measure; a quantile is the smallest ratio up to which that share of the measure lies."""
+    order = numpy.argsort(ratio, kind="stable")
+    share = numpy.cumsum(weight[order]) / weight.sum()
+    found = {f"p{int(100 * level + .5):02}": ratio[order][numpy.searchsorted(share, level)] for level in (.05, .25, .5, .75, .95)}
+    found["sd"] = numpy.sqrt((weight * (ratio - 1.0) ** 2).sum() / weight.sum())
+    far = numpy.abs(ratio - 1.0) > 10.0 * found["sd"]
+    return {**found, "outliers": int(far.sum()), "outlier_share": weight[far].sum() / weight.sum(),
+            "cell_sd_without_outliers": ratio[~far].std()}
+
+
 def evaluate(vertices, cells, image, density=None):
     """Everything that a summary says about a planar map's quality."""
     w = triangle_areas(vertices, cells) * (1.0 if density is None else density)
@@ -75,6 +86,6 @@ def evaluate(vertices, cells, image, density=None):
         numpy.add.at(vertex_sum, cells[:, k], w * ratio)
         numpy.add.at(vertex_weight, cells[:, k], w)
     return {"measure": w.sum(), "energy": a.sum() * (w / w.sum() * (ratio - 1.0) ** 2).sum(), "cell_ratio": ratio,
-            "vertex_ratio": vertex_sum / vertex_weight, "ratio": statistics(ratio),
+            "vertex_ratio": vertex_sum / vertex_weight, "ratio": statistics(ratio), "ratio_weighted": weighted_statistics(ratio, w),
             "ratio_error": statistics(numpy.abs(ratio - 1.0)), "angle_error_deg": statistics(angle_error.ravel()),
             "folds": int((a <= 0.0).sum()), "boundary_vertices": len(boundary_edges(cells))}

@@ -207,6 +207,39 @@ static PetscErrorCode TestHistory(void)
   PetscFunctionReturn(0);
 }
 
+/* Texts of either kind are read alike, cut to what there is room for. */
+static PetscErrorCode TestTexts(void)
+{
+  const EqmSlab one = {1, 0, 1, 0};
+  const PetscReal value = 1.0;
+  char text[64];
+
+  PetscFunctionBegin;
+  for (int fixed = 0; fixed < 2; fixed++) {
+    EqmH5 h5;
+    EqmSlab slab = one;
+    PetscCall(EqmH5Create(PETSC_COMM_WORLD, "texts.h5", &h5));
+    h5->fixed_texts = (PetscBool)fixed;
+    if (h5->rank > 0) slab.count = 0;
+    PetscCall(EqmH5DeclareReals(h5, "/one", 1, 0));
+    PetscCall(EqmH5PutText(h5, "empty", ""));
+    if (!fixed) PetscCall(EqmH5PutText(h5, "name", "before"));
+    PetscCall(EqmH5PutText(h5, "name", "größer als zuvor"));
+    PetscCall(EqmH5Reserve(h5));
+    PetscCall(EqmH5WriteReals(h5, "/one", slab, &value));
+    PetscCall(EqmH5Commit(&h5));
+    PetscCall(EqmH5Open(PETSC_COMM_WORLD, "texts.h5", &h5));
+    PetscCall(EqmH5GetText(h5, "empty", "?", text, sizeof(text)));
+    CHECK(strcmp(text, "") == 0);
+    PetscCall(EqmH5GetText(h5, "name", "?", text, sizeof(text)));
+    CHECK(strcmp(text, "größer als zuvor") == 0);
+    PetscCall(EqmH5GetText(h5, "name", "?", text, 4));
+    CHECK(strlen(text) == 3);
+    PetscCall(EqmH5Close(&h5));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Errors are expected: let nobody print them. */
 #define EXPECT(code, call)                                                                                             \
   do {                                                                                                                 \
@@ -237,6 +270,10 @@ static PetscErrorCode TestFailures(void)
   EXPECT(EQM_ERR_IO, EqmMapRead(soup, "test_store.csv.h5", &back));
   PetscCall(EqmMapWrite(map, "test_store.h5"));
   EXPECT(EQM_ERR_MESH, EqmMapRead(other, "test_store.h5", &back));
+  PetscCall(EqmMapAddCount(map, "format_version", 99)); /* replaces the version that is */
+  PetscCall(EqmMapWrite(map, "future.h5"));
+  EXPECT(EQM_ERR_IO, EqmMapRead(soup, "future.h5", &back));
+  map->num_figures = 0;
 
   /* /dev/full takes a file's bytes and gives none back: a link there is a full disk for anyone. */
   PetscCall(Slurp("test_store.h5", &before));
@@ -305,6 +342,7 @@ int main(int argc, char **argv)
   PetscCall(TestRoundTrip(3, 2, 1)); /* one cell: most ranks have none */
   PetscCall(TestSummary());
   PetscCall(TestHistory());
+  PetscCall(TestTexts());
   PetscCall(TestFailures());
   PetscCall(TestOldFileSurvives());
   PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
