@@ -6,20 +6,23 @@
 
 /* The version of these headers. EqmVersion gives that of the library. */
 #define EQUIMAP_VERSION_MAJOR    0
-#define EQUIMAP_VERSION_MINOR    1
-#define EQUIMAP_VERSION_SUBMINOR 0
+#define EQUIMAP_VERSION_MINOR    1 /* its second number */
+#define EQUIMAP_VERSION_SUBMINOR 0 /* its third number */
 
-/* Compare the headers' version with MAJOR.MINOR.SUBMINOR, like PETSC_VERSION_GE and its relatives:
-   #if EQUIMAP_VERSION_GE(0, 2, 0). */
+/* Is it MAJOR.MINOR.SUBMINOR? Like PETSC_VERSION_EQ, as are its relatives below; to be used behind \#if. */
 #define EQUIMAP_VERSION_EQ(MAJOR, MINOR, SUBMINOR)                                                                     \
   ((EQUIMAP_VERSION_MAJOR == (MAJOR)) && (EQUIMAP_VERSION_MINOR == (MINOR)) && (EQUIMAP_VERSION_SUBMINOR == (SUBMINOR)))
+/* Is the headers' version older than MAJOR.MINOR.SUBMINOR? */
 #define EQUIMAP_VERSION_LT(MAJOR, MINOR, SUBMINOR)                                                                     \
   (EQUIMAP_VERSION_MAJOR < (MAJOR) ||                                                                                  \
    (EQUIMAP_VERSION_MAJOR == (MAJOR) &&                                                                                \
     (EQUIMAP_VERSION_MINOR < (MINOR) || (EQUIMAP_VERSION_MINOR == (MINOR) && EQUIMAP_VERSION_SUBMINOR < (SUBMINOR)))))
+/* Is it that version or an older one? */
 #define EQUIMAP_VERSION_LE(MAJOR, MINOR, SUBMINOR)                                                                     \
   (EQUIMAP_VERSION_LT(MAJOR, MINOR, SUBMINOR) || EQUIMAP_VERSION_EQ(MAJOR, MINOR, SUBMINOR))
+/* Is it that version or a newer one? */
 #define EQUIMAP_VERSION_GE(MAJOR, MINOR, SUBMINOR) (!EQUIMAP_VERSION_LT(MAJOR, MINOR, SUBMINOR))
+/* Is it newer? */
 #define EQUIMAP_VERSION_GT(MAJOR, MINOR, SUBMINOR) (!EQUIMAP_VERSION_LE(MAJOR, MINOR, SUBMINOR))
 
 /* Error codes that library functions return beside PETSc's own. Each has an exit code of the program behind it.

@@ -9,6 +9,7 @@
 
 #include <equimap/mesh.h>
 
+/* The image of a mesh. */
 typedef struct _p_EqmMap *EqmMap;
 
 /* Longest description of a linear solver, terminating zero included. */

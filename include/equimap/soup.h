@@ -137,7 +137,9 @@ typedef enum {
   EQM_NUM_FINDINGS
 } EqmFindingKind;
 
+/* Of how many vertices or cells a finding tells the numbers, at most. */
 #define EQM_FINDING_SHOWN 5
+/* One kind of fault: how often it occurs, and where. */
 typedef struct {
   PetscInt64 count;
   PetscInt shown;                       /* how many of `where` are filled */
@@ -153,6 +155,7 @@ typedef enum {
   EQM_NUM_TOPOLOGIES
 } EqmTopology;
 
+/* What a mesh is and what is wrong with it; the same on every rank. */
 typedef struct {
   PetscInt cell_size; /* 3 triangles, 4 tetrahedra */
   EqmFinding finding[EQM_NUM_FINDINGS];
