@@ -53,3 +53,8 @@ if(EQUIMAP_STATIC)
 endif()
 configure_file(cmake/equimap.pc.in ${CMAKE_CURRENT_BINARY_DIR}/equimap.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/equimap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# Environment Modules, Lmod: module use PREFIX/share/modulefiles.
+configure_file(cmake/modulefile.in ${CMAKE_CURRENT_BINARY_DIR}/modulefile @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/modulefile DESTINATION ${CMAKE_INSTALL_DATADIR}/modulefiles/equimap RENAME ${PROJECT_VERSION})
+install(FILES CITATION.cff DESTINATION ${CMAKE_INSTALL_DATADIR}/equimap)
