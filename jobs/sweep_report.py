@@ -16,6 +16,7 @@ row's paper gives figures; a field is empty where there is no figure:
     error_mean, error_sd, error_p25 ... error_p95    of |r - 1| over the cells: mean, standard deviation, percentiles
     eigenvalue          the smallest of the energy's Hessian, with -hessian_eigenvalues
     noise_error         err-E of 001 (6.6) against the row that the column `against` names
+    angle_mean, angle_median    conformal: angle error in degrees
     dissimilarity       register: d(phi) of 003
     landmark_error      register: the largest distance between landmarks in the target, in radii
     paper.X             the published X
@@ -28,7 +29,7 @@ import sweep_text
 from sweep_table import Store, find_preset, published
 
 ALWAYS = ("energy", "sd", "folds", "iterations", "seconds")
-SOMETIMES = ("eigenvalue", "noise_error", "dissimilarity", "landmark_error")
+SOMETIMES = ("angle_mean", "angle_median", "eigenvalue", "noise_error", "dissimilarity", "landmark_error")
 
 
 def figures_at_end(summary):
@@ -42,6 +43,8 @@ def figures_at_end(summary):
     }
     if summary.get("hessian_eigenvalues"):
         figures["eigenvalue"] = summary["hessian_eigenvalues"][0]
+    if summary["command"] == "conformal":
+        figures.update(angle_mean=summary["angle_error_deg"]["mean"], angle_median=summary["angle_error_deg"]["median"])
     return {**figures, **figures_of_registration(summary.get("register", {}))}
 
 
