@@ -82,8 +82,9 @@ PETSC_EXTERN PetscErrorCode EqmMapDestroy(EqmMap *map);
    `repaired` and `parent` are referenced, are written into a result file, and must outlive `map`. */
 PETSC_EXTERN PetscErrorCode EqmMapOntoInput(EqmMap repaired, EqmSoup input, const PetscInt *parent,
                                             const PetscReal *cell_weight, EqmMap *map);
-/* EqmMapRead - read the map of the mesh `soup` from a file: a result (.h5, /map/coordinates), or a mesh of any format
-   whose vertices are the images; with z = 0 everywhere it is a planar map. Ratios and distortion stay zero until
+/* EqmMapRead - read the map of the mesh `soup` from a file: a result (.h5, /map/coordinates), a mesh of any format whose
+   vertices are the images (or, if they repeat the mesh, its texture coordinates), a CSV or NPY file with two or three
+   coordinates per vertex; with one z everywhere it is a planar map. Ratios and distortion stay zero until
    EqmMapMeasure. Collective. Errors: EQM_ERR_IO, EQM_ERR_MESH (the vertex counts differ). */
 PETSC_EXTERN PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *map);
 /* EqmMapMeasure - compute distortion, ratios and folds of `map` from coordinates alone.

@@ -1,9 +1,27 @@
 /* equimap measure MESH MAP: distortion and folds of any map of the mesh. */
 #include "app.h"
+#include "base/atomicfile.h"
+#include "base/rows.h"
+#include "format/image.h"
+#include "measure/foreign.h"
+#include "store/output.h"
+#include "store/store.h"
 
 typedef struct {
-  char density[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN];
+  char output[PETSC_MAX_PATH_LEN], density[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN],
+      histogram[PETSC_MAX_PATH_LEN], cells[PETSC_MAX_PATH_LEN], vertices[PETSC_MAX_PATH_LEN];
+  EqmImageSource source;
 } MeasureOptions;
+
+/* What is measured. */
+typedef struct {
+  EqmLedger ledger;
+  EqmSoup soup;   /* as it was read */
+  EqmImage image; /* of a file that is no result */
+  EqmMesh mesh;   /* of the map's soup */
+  EqmMap map;
+  EqmImagePlacement placement;
+} Measured;
 
 static PetscErrorCode PrintStatistics(const char *name, const EqmStatistics *s)
 {
@@ -16,12 +34,48 @@ static PetscErrorCode PrintStatistics(const char *name, const EqmStatistics *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Print(const EqmDistortion *d, PetscBool surface)
+/* Which numbers of the file are the map, and what they fill. */
+static PetscErrorCode PrintImage(const Measured *m)
+{
+  const EqmImagePlacement *const p = &m->placement;
+  const PetscBool known =
+      (PetscBool)(p->shape != EQM_FILLS_PLANE && p->shape != EQM_FILLS_SPACE && p->shape != EQM_FILLS_SOLID);
+
+  PetscFunctionBegin;
+  if (m->image.texture) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  read           texture coordinates"));
+  if (m->image.texture && m->image.num_copies) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                          "; the surface is cut along their seams, where vertices have %" PetscInt_FMT
+                          " more images, numbered after the others",
+                          m->image.num_copies));
+  }
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s  image          %s", m->image.texture ? "\n" : "",
+                        EqmDomainShapeName(p->shape)));
+  if (p->size != 1. && known) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, " of %s %.6g at (%.6g, %.6g, %.6g)",
+                          p->shape == EQM_FILLS_SQUARE ? "side" : "radius", (double)p->size, (double)p->center[0],
+                          (double)p->center[1], (double)p->center[2]));
+  }
+  if (p->size != 1.) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, ": measured at %s 1",
+                          p->shape == EQM_FILLS_SQUARE  ? "side"
+                          : known                       ? "radius"
+                          : p->shape == EQM_FILLS_SOLID ? "volume"
+                                                        : "area"));
+  }
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PrintDistortion(const EqmDistortion *d, PetscBool surface, PetscBool in_space)
 {
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
-                        "  energy         %.10e   (image measure %.10g)\n  folds          %" PetscInt64_FMT "\n",
-                        (double)d->energy, (double)d->image_measure, d->folds));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  energy         %.10e   (image measure %.10g)\n", (double)d->energy,
+                        (double)d->image_measure));
+  if (in_space)
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  folds          not counted: triangles in space have no side\n"));
+  else
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  folds          %" PetscInt64_FMT "\n", d->folds));
   PetscCall(PrintStatistics("ratio", &d->ratio));
   PetscCall(PrintStatistics("|ratio - 1|", &d->ratio_error));
   if (!surface) PetscFunctionReturn(0);
@@ -30,7 +84,72 @@ static PetscErrorCode Print(const EqmDistortion *d, PetscBool surface)
   PetscFunctionReturn(0);
 }
 
-/* What has no area or volume, or no place, has no ratio. */
+/* A table of reals per cell or vertex: `num` rows of `width` on rank 0. */
+typedef struct {
+  const char *header;
+  PetscInt num, width;
+  PetscReal *values;
+} Table;
+
+static void PrintTable(EqmAtomicFile *file, void *context)
+{
+  const Table *const table = context;
+
+  EqmAtomicPrint(file, "%s\n", table->header);
+  for (PetscInt i = 0; i < table->num; i++) {
+    EqmAtomicPrint(file, "%" PetscInt_FMT ",", i);
+    EqmAtomicPrintReals(file, table->width, table->values + (size_t)table->width * (size_t)i, ',');
+    EqmAtomicPrint(file, "\n");
+  }
+}
+
+/* Gather one or two columns (the second may be NULL) and write them. Collective. */
+static PetscErrorCode WriteTable(MPI_Comm comm, const char *file, const char *header, PetscInt num, PetscInt count,
+                                 const PetscReal *first, const PetscReal *second)
+{
+  Table table = {.header = header, .num = num, .width = second ? 2 : 1};
+  PetscReal *rows;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscMalloc2(table.width * count, &rows, rank == 0 ? table.width * num : 0, &table.values));
+  for (PetscInt i = 0; i < count; i++) {
+    rows[table.width * i] = first[i];
+    if (second) rows[table.width * i + 1] = second[i];
+  }
+  PetscCall(EqmFetchSlab(comm, count, rank == 0 ? num : 0, 0, MPIU_REAL, table.width, rows, table.values));
+  PetscCall(EqmAtomicPrintFile(comm, file, PrintTable, &table));
+  PetscCall(PetscFree2(rows, table.values));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Write(const MeasureOptions *options, Measured *m)
+{
+  const PetscReal *per_cell, *per_vertex, *quasi, *factor;
+  EqmSoup soup;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMapGetSoup(m->map, &soup));
+  PetscCall(EqmMapGetRatios(m->map, &per_cell, &per_vertex));
+  PetscCall(EqmMapGetQuasiConformal(m->map, &quasi));
+  PetscCall(EqmMapGetConformalFactor(m->map, &factor));
+  if (options->cells[0]) {
+    PetscCall(WriteTable(soup->comm, options->cells, quasi ? "cell,ratio,quasi_conformal" : "cell,ratio",
+                         soup->num_cells, soup->cell_end - soup->cell_start, per_cell, quasi));
+  }
+  if (options->vertices[0]) {
+    PetscCall(WriteTable(soup->comm, options->vertices, factor ? "vertex,ratio,conformal_factor" : "vertex,ratio",
+                         soup->num_vertices, soup->vertex_end - soup->vertex_start, per_vertex, factor));
+  }
+  PetscCall(EqmMapSetCost(m->map, m->ledger));
+  if (options->output[0]) PetscCall(EqmMapWrite(m->map, options->output));
+  if (options->summary[0]) PetscCall(EqmMapWriteSummary(m->map, options->summary));
+  if (options->histogram[0]) PetscCall(EqmMapWriteHistogram(m->map, options->histogram));
+  PetscFunctionReturn(0);
+}
+
+/* What has no area or volume, or no position, has no ratio. */
 static PetscErrorCode CheckMeasurable(EqmSoup soup)
 {
   EqmDiagnosis diagnosis;
@@ -49,65 +168,145 @@ static PetscErrorCode CheckMeasurable(EqmSoup soup)
   PetscFunctionReturn(0);
 }
 
-/* Measure and report; the map's status: folds or fine. */
-static PetscErrorCode Measure(const EqmCommandLine *line, const MeasureOptions *options, EqmStatus *status)
+/* A result holds the map itself; every other file an image. */
+static PetscErrorCode ReadMap(const MeasureOptions *options, const char *file, Measured *m)
 {
-  EqmLedger ledger;
-  EqmSoup soup;
-  EqmMesh mesh;
-  EqmMap map;
-  const EqmDistortion *distortion;
-  PetscReal *coordinates, *x;
-  PetscInt dim;
+  PetscReal *coordinates;
 
   PetscFunctionBegin;
-  PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
-  PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
-  if (options->density[0]) PetscCall(EqmSoupReadDensity(soup, options->density));
-  PetscCall(CheckMeasurable(soup));
-  PetscCall(EqmMapRead(soup, line->argument[1], &map));
-  PetscCall(EqmMeshCreate(soup, ledger, &mesh));
-  PetscCall(EqmMapGetDimension(map, &dim));
-  PetscCall(EqmMapGetCoordinates(map, &coordinates));
-  PetscCall(PetscMalloc1(dim * mesh->num_local, &x));
-  PetscCall(EqmMeshVerticesFromInput(mesh, soup, dim, coordinates, x));
-  PetscCall(EqmMapMeasure(map, mesh, x));
-  PetscCall(PetscFree(x));
-  PetscCall(EqmMapGetDistortion(map, &distortion));
-  *status = distortion->folds ? EQM_STATUS_FOLDS : EQM_STATUS_CONVERGED;
-  PetscCall(EqmMapSetStatus(map, *status, ""));
-  PetscCall(EqmMapSetEnergies(map, distortion->energy, distortion->energy));
-  PetscCall(EqmMapSetCommand(map, "measure"));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s as a map of %s\n", line->argument[1], line->argument[0]));
-  PetscCall(Print(distortion, (PetscBool)(soup->cell_size == 3)));
-  if (options->summary[0]) PetscCall(EqmMapWriteSummary(map, options->summary));
-  if (options->histogram[0]) PetscCall(EqmMapWriteHistogram(map, options->histogram));
-  PetscCall(EqmMapDestroy(&map));
-  PetscCall(EqmMeshDestroy(&mesh));
-  PetscCall(EqmSoupDestroy(&soup));
-  PetscCall(EqmLedgerDestroy(&ledger));
+  if (EqmHasSuffix(file, ".h5")) {
+    PetscCall(EqmMapRead(m->soup, file, &m->map));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(EqmImageRead(m->soup, file, options->source, &m->image));
+  PetscCall(EqmMapCreate(m->image.soup, m->image.dim, &m->map));
+  PetscCall(EqmMapGetCoordinates(m->map, &coordinates));
+  PetscCall(PetscArraycpy(coordinates, m->image.coordinates,
+                          m->image.dim * (m->image.soup->vertex_end - m->image.soup->vertex_start)));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status)
+/* Measure; an image that is the mesh itself is no map. */
+static PetscErrorCode MeasureMap(const char *file, Measured *m)
 {
-  MeasureOptions options = {.density = ""};
+  PetscReal *coordinates, *x;
+  PetscInt dim;
+  EqmSoup soup;
+  PetscBool repeats;
 
   PetscFunctionBegin;
+  PetscCall(EqmMapGetSoup(m->map, &soup));
+  PetscCall(EqmMeshCreate(soup, m->ledger, &m->mesh));
+  PetscCall(EqmMapGetDimension(m->map, &dim));
+  PetscCall(EqmMapGetCoordinates(m->map, &coordinates));
+  PetscCall(PetscMalloc1(dim * m->mesh->num_local, &x));
+  PetscCall(EqmMeshVerticesFromInput(m->mesh, soup, dim, coordinates, x));
+  PetscCall(EqmMapMeasureForeign(m->map, m->mesh, x, &m->placement, &repeats));
+  PetscCall(PetscFree(x));
+  if (repeats) {
+    EqmFail(
+        PETSC_COMM_WORLD, EQM_ERR_MESH,
+        "the vertices of %s are those of %s itself, and it has no texture coordinates at all corners: there is no map "
+        "in it. Give the file that the flattening program wrote, or coordinates as CSV or NPY",
+        file, m->soup->file);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Measure and report; the map's status: folds or fine. */
+static PetscErrorCode Measure(const EqmCommandLine *line, const MeasureOptions *options, EqmStatus *status)
+{
+  Measured m = {.map = NULL};
+  const EqmDistortion *distortion;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &m.ledger));
+  PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &m.soup));
+  if (options->density[0]) PetscCall(EqmSoupReadDensity(m.soup, options->density));
+  PetscCall(CheckMeasurable(m.soup));
+  PetscCall(ReadMap(options, line->argument[1], &m));
+  PetscCall(MeasureMap(line->argument[1], &m));
+  PetscCall(EqmMapGetDistortion(m.map, &distortion));
+  *status = distortion->folds ? EQM_STATUS_FOLDS : EQM_STATUS_CONVERGED;
+  PetscCall(EqmMapSetStatus(m.map, *status, ""));
+  PetscCall(EqmMapSetEnergies(m.map, distortion->energy, distortion->energy));
+  PetscCall(EqmMapSetCommand(m.map, "measure"));
+  PetscCall(EqmMapAddText(m.map, "image.shape", EqmDomainShapeName(m.placement.shape)));
+  PetscCall(EqmMapAddFigure(m.map, "image.size", m.placement.size));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s as a map of %s\n", line->argument[1], line->argument[0]));
+  PetscCall(PrintImage(&m));
+  PetscCall(PrintDistortion(distortion, (PetscBool)(m.soup->cell_size == 3),
+                            (PetscBool)(m.placement.shape == EQM_FILLS_SPACE)));
+  PetscCall(Write(options, &m));
+  PetscCall(EqmMapDestroy(&m.map));
+  PetscCall(EqmMeshDestroy(&m.mesh));
+  PetscCall(EqmImageReset(&m.image));
+  PetscCall(EqmSoupDestroy(&m.soup));
+  PetscCall(EqmLedgerDestroy(&m.ledger));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadOptions(MeasureOptions *options)
+{
+  static const char *const sources[] = {"auto", "vertices", "texture"};
+  PetscInt source = EQM_IMAGE_AUTO;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(options, sizeof(*options)));
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
+  PetscCall(PetscOptionsEList("-map_in",
+                              "which numbers of a mesh file are the map: its vertices, its texture coordinates (OBJ's "
+                              "vt, PLY's s and t), or auto: the texture coordinates if the vertices repeat the mesh",
+                              NULL, sources, 3, sources[0], &source, NULL));
   PetscCall(PetscOptionsString("-density", "a positive weight per cell: measure mass instead of area", NULL, "",
-                               options.density, sizeof(options.density), NULL));
-  PetscCall(PetscOptionsString("-summary", "write the figures as JSON", NULL, "", options.summary,
-                               sizeof(options.summary), NULL));
-  PetscCall(PetscOptionsString("-histogram", "write the histogram of angle errors as CSV", NULL, "", options.histogram,
-                               sizeof(options.histogram), NULL));
+                               options->density, sizeof(options->density), NULL));
+  PetscCall(PetscOptionsString("-o",
+                               "write map and distortion: .h5 (everything, for equimap report), or the image in a mesh "
+                               "format; several with commas",
+                               NULL, "", options->output, sizeof(options->output), NULL));
+  PetscCall(PetscOptionsString("-cells", "write ratio and quasiconformal distortion of every cell as CSV", NULL, "",
+                               options->cells, sizeof(options->cells), NULL));
+  PetscCall(PetscOptionsString("-vertices", "write ratio and conformal factor around every vertex as CSV", NULL, "",
+                               options->vertices, sizeof(options->vertices), NULL));
+  PetscCall(PetscOptionsString("-summary", "write the figures as JSON", NULL, "", options->summary,
+                               sizeof(options->summary), NULL));
+  PetscCall(PetscOptionsString("-histogram", "write the histogram of angle errors as CSV", NULL, "", options->histogram,
+                               sizeof(options->histogram), NULL));
   PetscOptionsEnd();
+  options->source = (EqmImageSource)source;
+  PetscFunctionReturn(0);
+}
+
+/* Refuse before the work what would be refused after it. */
+static PetscErrorCode CheckOutputs(const EqmCommandLine *line, const MeasureOptions *options)
+{
+  const char *const files[] = {options->output, options->cells, options->vertices, options->summary,
+                               options->histogram};
+
+  PetscFunctionBegin;
+  if (options->output[0]) PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
+  for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++) {
+    if (!files[i][0]) continue;
+    for (int a = 0; a < 2; a++) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, line->argument[a], files[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Run `equimap measure`. Collective on PETSC_COMM_WORLD. Errors: EQM_ERR_USAGE, EQM_ERR_MESH (the mesh cannot be
+   measured; the file holds no map), and those of EqmSoupRead, EqmSoupReadDensity, EqmImageRead and EqmMapWrite. */
+PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status)
+{
+  MeasureOptions options;
+
+  PetscFunctionBegin;
+  PetscCall(ReadOptions(&options));
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
   if (line->num_arguments != 2) {
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
             "measure wants a mesh and a map, %d given; usage: equimap measure MESH MAP", line->num_arguments);
   }
+  PetscCall(CheckOutputs(line, &options));
   PetscCall(Measure(line, &options, status));
   PetscFunctionReturn(0);
 }

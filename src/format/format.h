@@ -50,6 +50,9 @@ PETSC_INTERN const EqmFormat *EqmFormatOfContent(const char *bytes, size_t lengt
 PETSC_INTERN const EqmFormat *EqmFormatOfSuffix(const char *file);
 /* ".ply .vtu ..." of the formats that can be written (or read), for messages. Not collective. */
 PETSC_INTERN void EqmFormatListSuffixes(PetscBool writable, char *text, size_t length);
+/* Read and parse a file on this rank, unless all ranks must read its format; see read.c. Not collective. */
+PETSC_INTERN PetscErrorCode EqmFormatReadOnRank(const char *file, int *row, EqmSerialMesh *mesh, char *error,
+                                                size_t error_length);
 /* Write a mesh and its fields from this rank, the format by suffix; see write.c. Not collective. */
 PETSC_INTERN PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                                  PetscInt num_fields, char *error, size_t length);

@@ -18,8 +18,9 @@ static PetscErrorCode ChooseFormat(const char *file, const char *bytes, size_t l
   return EQM_ERR_IO;
 }
 
-/* On rank 0: read and parse the file, unless its format is read by all ranks. */
-static PetscErrorCode ReadOnRoot(const char *file, int *row, EqmSerialMesh *mesh, char *error, size_t error_length)
+/* EqmFormatReadOnRank - read and parse a file on this rank, unless its format is one that all ranks read. Not
+   collective. row - of its format in the list. Errors (quiet, reason in `error`): those of EqmSoupRead. */
+PetscErrorCode EqmFormatReadOnRank(const char *file, int *row, EqmSerialMesh *mesh, char *error, size_t error_length)
 {
   const EqmFormat *format = NULL;
   char *bytes, reason[EQM_MESSAGE_MAX / 2] = "";
@@ -55,7 +56,7 @@ PetscErrorCode EqmSoupRead(MPI_Comm comm, const char *file, EqmSoup *soup)
   PetscFunctionBegin;
   *soup = NULL;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (rank == 0) code = ReadOnRoot(file, &row, &mesh, error, sizeof(error));
+  if (rank == 0) code = EqmFormatReadOnRank(file, &row, &mesh, error, sizeof(error));
   PetscCall(EqmAgree(comm, code, error));
   PetscCallMPI(MPI_Bcast(&row, 1, MPI_INT, 0, comm));
   format = EqmFormatAt(row);

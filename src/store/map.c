@@ -1,8 +1,8 @@
 /* Maps: made, freed, read from a file. */
 #include "store/map_private.h"
 #include "store/store.h"
+#include "format/image.h"
 #include "h5/h5.h"
-#include "base/rows.h"
 #include <string.h>
 
 PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map)
@@ -126,36 +126,30 @@ static PetscErrorCode ReadResult(EqmSoup soup, const char *file, EqmMap *map)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FillFromImage(EqmSoup soup, EqmSoup image, EqmMap *map)
+static PetscErrorCode FillFromImage(EqmSoup soup, const EqmImage *image, const char *file, EqmMap *map)
 {
-  const PetscInt count = soup->vertex_end - soup->vertex_start;
-  PetscBool lifted = PETSC_FALSE, any;
-  PetscReal *points;
-
   PetscFunctionBegin;
-  PetscCall(CheckCount(soup, image->num_vertices, image->file));
-  PetscCall(PetscMalloc1(3 * count, &points));
-  PetscCall(EqmFetchSlab(image->comm, image->vertex_end - image->vertex_start, count, soup->vertex_start, MPIU_REAL, 3,
-                         image->vertices, points));
-  for (PetscInt i = 0; i < count; i++) lifted = (PetscBool)(lifted || points[3 * i + 2] != 0.0);
-  PetscCall(MPIU_Allreduce(&lifted, &any, 1, MPIU_BOOL, MPI_LOR, soup->comm));
-  PetscCall(EqmMapCreate(soup, any ? 3 : 2, map));
-  for (PetscInt i = 0; i < count; i++) {
-    for (PetscInt d = 0; d < (*map)->dim; d++) (*map)->coordinates[(*map)->dim * i + d] = points[3 * i + d];
+  if (image->num_copies) {
+    EqmFail(soup->comm, EQM_ERR_MESH,
+            "the texture coordinates of '%s' have seams, %" PetscInt_FMT
+            " vertices have several images: as a map it can be measured only",
+            file, image->num_copies);
   }
-  PetscCall(PetscFree(points));
+  PetscCall(EqmMapCreate(soup, image->dim, map));
+  PetscCall(
+      PetscArraycpy((*map)->coordinates, image->coordinates, image->dim * (soup->vertex_end - soup->vertex_start)));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReadImage(EqmSoup soup, const char *file, EqmMap *map)
 {
   PetscErrorCode error;
-  EqmSoup image;
+  EqmImage image;
 
   PetscFunctionBegin;
-  PetscCall(EqmSoupRead(soup->comm, file, &image));
-  error = FillFromImage(soup, image, map);
-  PetscCall(EqmSoupDestroy(&image));
+  PetscCall(EqmImageRead(soup, file, EQM_IMAGE_AUTO, &image));
+  error = FillFromImage(soup, &image, file, map);
+  PetscCall(EqmImageReset(&image));
   PetscCall(error);
   PetscFunctionReturn(0);
 }

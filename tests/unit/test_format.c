@@ -8,18 +8,7 @@
 #include "format/format.h"
 #include "format/input.h"
 #include "format_samples.h"
-
-static int failures;
-
-#define CHECK(condition, ...)                                                                                          \
-  do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      fprintf(stderr, "%s:%d: ", __FILE__, __LINE__);                                                                  \
-      fprintf(stderr, __VA_ARGS__);                                                                                    \
-      fprintf(stderr, "\n");                                                                                           \
-      ++failures;                                                                                                      \
-    }                                                                                                                  \
-  } while (0)
+#include "support/failures.h"
 
 /* Errors are expected here: their code is enough, nothing is printed. */
 static PetscErrorCode Expected(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,

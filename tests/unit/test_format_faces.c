@@ -5,18 +5,7 @@
 #include <string.h>
 #include "format/format.h"
 #include "format/polygon.h"
-
-static int failures;
-
-#define CHECK(condition, ...)                                                                                          \
-  do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      fprintf(stderr, "%s:%d: ", __FILE__, __LINE__);                                                                  \
-      fprintf(stderr, __VA_ARGS__);                                                                                    \
-      fprintf(stderr, "\n");                                                                                           \
-      ++failures;                                                                                                      \
-    }                                                                                                                  \
-  } while (0)
+#include "support/failures.h"
 
 /* A square of side 1 with a kite at its right: the kite's shorter diagonal joins its corners 1 and 3. */
 #define POINTS "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 .5 0\n"
