@@ -22,16 +22,16 @@ enum { NUM_COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 
 PetscErrorCode EqmCommandFind(const char *name, const EqmCommandRow **row)
 {
-  const char *names[NUM_COMMANDS];
-  char hint[128];
+  char names[256] = "", hint[128];
 
   PetscFunctionBegin;
   for (int k = 0; k < NUM_COMMANDS; k++) {
-    names[k] = commands[k].name;
+    PetscCall(PetscStrlcat(names, commands[k].name, sizeof(names)));
+    PetscCall(PetscStrlcat(names, " ", sizeof(names)));
     *row = &commands[k];
     if (!strcmp(name, commands[k].name)) PetscFunctionReturn(0);
   }
-  PetscCall(EqmDidYouMean(name, names, NUM_COMMANDS, hint, sizeof(hint)));
+  PetscCall(EqmDidYouMean(name, names, hint, sizeof(hint)));
   EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "there is no command '%s'%s; equimap --help lists the commands", name, hint);
 }
 

@@ -98,14 +98,18 @@ PetscErrorCode EqmForgetForeignOptions(void)
 static PetscErrorCode AddUnknown(const EqmCatalogue *catalogue, const char *name, char *unknown, size_t length)
 {
   const int num = catalogue ? catalogue->num_options : 0;
-  const char **names;
-  char hint[128], dashed[LONGEST_NAME];
+  size_t size = 1;
+  char *names, hint[128], dashed[LONGEST_NAME];
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(num, &names));
-  for (int k = 0; k < num; k++) names[k] = catalogue->option[k].name;
+  for (int k = 0; k < num; k++) size += strlen(catalogue->option[k].name) + 1;
+  PetscCall(PetscCalloc1(size, &names));
+  for (int k = 0; k < num; k++) {
+    PetscCall(PetscStrlcat(names, catalogue->option[k].name, size));
+    PetscCall(PetscStrlcat(names, " ", size));
+  }
   PetscCall(PetscSNPrintf(dashed, sizeof(dashed), "-%s", name));
-  PetscCall(EqmDidYouMean(dashed, names, num, hint, sizeof(hint)));
+  PetscCall(EqmDidYouMean(dashed, names, hint, sizeof(hint)));
   PetscCall(PetscFree(names));
   PetscCall(PetscStrlcat(unknown, unknown[0] ? ", -" : "-", length));
   PetscCall(PetscStrlcat(unknown, name, length));

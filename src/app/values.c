@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LONGEST = 4096, MOST_CHOICES = 32 };
+enum { LONGEST = 4096 };
 
 /* Does PETSc understand it? Its own message, which does not know the option, is not shown. */
 static PetscErrorCode IsUnderstood(const char *value, EqmOptionKind kind, PetscBool *fits)
@@ -57,7 +57,7 @@ static PetscErrorCode CheckChoice(const EqmOption *option, const char *value)
   PetscFunctionBegin;
   PetscCall(PetscStrToArray(option->choices, ' ', &num, &words));
   for (int k = 0; k < num; k++) fits = (PetscBool)(fits || !strcasecmp(words[k], value));
-  PetscCall(EqmDidYouMean(value, (const char *const *)words, num, hint, sizeof(hint)));
+  PetscCall(EqmDidYouMean(value, option->choices, hint, sizeof(hint)));
   PetscCall(PetscStrToArrayDestroy(num, words));
   if (!fits)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "%s %s: choose one of %s%s", option->name, value, option->choices, hint);

@@ -1,15 +1,17 @@
 #include "base/nearest.h"
 #include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { LONGEST_WORD = 63 };
 
 /* The Damerau-Levenshtein distance of two words, each letter moved once at most. Longer words are cut. */
-static int Distance(const char *a, const char *b)
+static int Distance(const char *a, int na, const char *b, int nb)
 {
   int d[LONGEST_WORD + 1][LONGEST_WORD + 1];
-  const int na = (int)strnlen(a, LONGEST_WORD), nb = (int)strnlen(b, LONGEST_WORD);
 
+  na = PetscMin(na, LONGEST_WORD);
+  nb = PetscMin(nb, LONGEST_WORD);
   for (int i = 0; i <= na; i++) d[i][0] = i;
   for (int j = 0; j <= nb; j++) d[0][j] = j;
   for (int i = 1; i <= na; i++) {
@@ -24,26 +26,24 @@ static int Distance(const char *a, const char *b)
   return d[na][nb];
 }
 
-const char *EqmNearestName(const char *word, const char *const names[], int num)
+PetscErrorCode EqmDidYouMean(const char *word, const char *names, char *text, size_t length)
 {
-  const char *nearest = NULL;
-  int least = 1 + (int)strlen(word) / 3;
-
-  for (int k = 0; k < num; k++) {
-    const int distance = Distance(word, names[k]);
-    if (distance > least || (nearest && distance == least)) continue;
-    nearest = names[k];
-    least = distance;
-  }
-  return nearest;
-}
-
-PetscErrorCode EqmDidYouMean(const char *word, const char *const names[], int num, char *text, size_t length)
-{
-  const char *const nearest = EqmNearestName(word, names, num);
+  const int word_length = (int)strlen(word);
+  int least = 2 + word_length / 3, near_length = 0;
+  const char *near = NULL;
 
   PetscFunctionBegin;
+  for (const char *name = names + strspn(names, " ,"); *name; name += strspn(name, " ,")) {
+    const int name_length = (int)strcspn(name, " ,"), distance = Distance(word, word_length, name, name_length);
+
+    if (distance < least) {
+      near = name;
+      near_length = name_length;
+      least = distance;
+    }
+    name += name_length;
+  }
   text[0] = '\0';
-  if (nearest) PetscCall(PetscSNPrintf(text, length, " (did you mean %s?)", nearest));
+  if (near) (void)snprintf(text, length, " (did you mean %.*s?)", near_length, near);
   PetscFunctionReturn(0);
 }

@@ -4,12 +4,11 @@
 
 #include <petscsys.h>
 
-/* The name among `num` that differs from `word` by the fewest letters inserted, dropped, changed or swapped with their
-   neighbour, whatever their case, or NULL if none comes within one letter and a third of the word. Not collective. */
-PETSC_INTERN const char *EqmNearestName(const char *word, const char *const names[], int num);
+/* EqmDidYouMean - " (did you mean NAME?)", or "" where no name is near.
 
-/* " (did you mean NAME?)" of the nearest name, or "". Not collective. */
-PETSC_INTERN PetscErrorCode EqmDidYouMean(const char *word, const char *const names[], int num, char *text,
-                                          size_t length);
+   Not collective. names - words with blanks or commas between. The nearest is the one that differs from `word` by the
+   fewest letters inserted, dropped, changed or swapped with their neighbour, whatever their case; by more than one
+   letter and a third of the word it is not near. text - of `length` characters. */
+PETSC_INTERN PetscErrorCode EqmDidYouMean(const char *word, const char *names, char *text, size_t length);
 
 #endif

@@ -1,15 +1,20 @@
 /* EqmSoupWrite, and the one-rank writer below it. */
 #include "format.h"
 #include "input.h"
+#include "base/nearest.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static PetscErrorCode RejectSuffix(const char *file, char *error, size_t length)
 {
-  char suffixes[256];
+  const char *const suffix = strrchr(file, '.');
+  char suffixes[256], hint[64];
 
   EqmFormatListSuffixes(PETSC_TRUE, suffixes, sizeof(suffixes));
-  snprintf(error, length, "%s: no mesh format with this suffix can be written; choose one of %s", file, suffixes);
+  PetscCall(EqmDidYouMean(suffix ? suffix : "", suffixes, hint, sizeof(hint)));
+  snprintf(error, length, "%s: no mesh format with this suffix can be written; choose one of %s%s", file, suffixes,
+           hint);
   return EQM_ERR_USAGE;
 }
 

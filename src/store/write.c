@@ -2,7 +2,9 @@
 #include "store/map_private.h"
 #include "store/output.h"
 #include "store/store.h"
+#include "base/nearest.h"
 #include "format/format.h"
+#include <string.h>
 
 /* Do something for every name of a comma-separated list. */
 typedef PetscErrorCode (*Action)(MPI_Comm comm, const char *file, void *context);
@@ -26,13 +28,15 @@ static PetscErrorCode ForEachFile(MPI_Comm comm, const char *files, Action actio
 static PetscErrorCode CheckSuffix(MPI_Comm comm, const char *file, void *context)
 {
   const EqmFormat *format = EqmFormatOfSuffix(file);
-  char suffixes[256];
+  const char *const suffix = strrchr(file, '.');
+  char suffixes[256], hint[64];
 
   PetscFunctionBegin;
   (void)context;
   if (!EqmHasSuffix(file, ".h5") && !(format && format->write)) {
     EqmFormatListSuffixes(PETSC_TRUE, suffixes, sizeof(suffixes));
-    EqmFail(comm, EQM_ERR_USAGE, "cannot write '%s': the suffix says the format, one of %s", file, suffixes);
+    PetscCall(EqmDidYouMean(suffix ? suffix : "", suffixes, hint, sizeof(hint)));
+    EqmFail(comm, EQM_ERR_USAGE, "cannot write '%s': the suffix says the format, one of %s%s", file, suffixes, hint);
   }
   PetscFunctionReturn(0);
 }
