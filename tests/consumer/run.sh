@@ -32,3 +32,22 @@ flags=$(pkg-config --cflags --libs equimap)
 mpicc -std=c11 -o "$work/consumer" "$source_folder/main.c" $flags
 echo "pkg-config:"
 run "$work/consumer"
+
+# The programs of docs/library.md: the first makes the same map as the program, to the last bit; the functions of the
+# second compile behind it.
+awk '/^    #include <equimap.h>/ {on = 1} /^## Conventions/ {exit} on && (/^    / || /^$/) {sub(/^    /, ""); print}' \
+    "$source_folder/../../docs/library.md" >"$work/page.c"
+grep -q EqmSoupCreateFromRoot "$work/page.c"
+# shellcheck disable=SC2086
+mpicc -std=c11 -Wall -Werror -Wno-unused-function -o "$work/page" "$work/page.c" $flags
+cd "$work"
+"$installed/bin/equimap" generate hills -n 800 -o scan.ply >/dev/null
+run ./page
+run "$installed/bin/equimap" disk scan.ply -o program.h5 -quiet >/dev/null || [ $? -eq 4 ]
+python=/usr/bin/python3
+[ -x "$python" ] || python=python3
+"$python" - <<'EOF'
+import h5py
+with h5py.File("map.h5") as page, h5py.File("program.h5") as program:
+    assert (page["map/coordinates"][:] == program["map/coordinates"][:]).all(), "another map than the program's"
+EOF
