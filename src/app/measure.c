@@ -2,10 +2,10 @@
 #include "app.h"
 #include "base/atomicfile.h"
 #include "base/rows.h"
+#include "format/format.h"
 #include "format/image.h"
 #include "measure/foreign.h"
 #include "store/output.h"
-#include "store/store.h"
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], density[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN],
@@ -171,10 +171,11 @@ static PetscErrorCode CheckMeasurable(EqmSoup soup)
 /* A result holds the map itself; every other file an image. */
 static PetscErrorCode ReadMap(const MeasureOptions *options, const char *file, Measured *m)
 {
+  const EqmFormat *const format = EqmFormatOfSuffix(file);
   PetscReal *coordinates;
 
   PetscFunctionBegin;
-  if (EqmHasSuffix(file, ".h5")) {
+  if (format && format->read_parallel) {
     PetscCall(EqmMapRead(m->soup, file, &m->map));
     PetscFunctionReturn(0);
   }
