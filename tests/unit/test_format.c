@@ -312,6 +312,30 @@ static void TestBadFiles(char *message)
   CHECK(EqmSoupRead(PETSC_COMM_WORLD, folder, &soup) == EQM_ERR_IO, "a folder instead of a file");
 }
 
+/* Entities are refused in every encoding; a document type without declarations is not. */
+static void TestEntities(char *message)
+{
+  static const char laughs[] = "<?xml version=\"1.0\" encoding=\"UTF-16\"?>\n<!DOCTYPE a [<!ENTITY b \"ha\">]>\n"
+                               "<VTKFile type=\"UnstructuredGrid\">&b;</VTKFile>\n";
+  static const char typed[] = "<?xml version=\"1.0\"?>\n<!DOCTYPE GIFTI SYSTEM \"http://www.nitrc.org/gifti.dtd\">\n"
+                              "<GIFTI Version=\"1.0\"></GIFTI>\n";
+  char wide[2 * sizeof(laughs)] = "\377\376";
+  EqmSoup soup = NULL;
+  PetscErrorCode code;
+
+  for (size_t i = 0; i + 1 < sizeof(laughs); ++i) {
+    wide[2 + 2 * i] = laughs[i];
+    wide[3 + 2 * i] = '\0';
+  }
+  WriteBytes(PathOf("wide.vtu"), wide, 2 * sizeof(laughs));
+  message[0] = '\0';
+  code = EqmSoupRead(PETSC_COMM_WORLD, PathOf("wide.vtu"), &soup);
+  CHECK(code == EQM_ERR_IO && strstr(message, "entities") && !soup, "wide.vtu: code %d, %s", (int)code, message);
+  WriteBytes(PathOf("typed.gii"), typed, sizeof(typed) - 1);
+  code = EqmSoupRead(PETSC_COMM_WORLD, PathOf("typed.gii"), &soup);
+  CHECK(code == EQM_ERR_MESH && strstr(message, "no triangles"), "typed.gii: code %d, %s", (int)code, message);
+}
+
 /* Not a number is for the diagnosis to report, not for the reader. */
 static void TestNotFinite(const char *message)
 {
@@ -487,6 +511,7 @@ int main(int argc, char **argv)
   TestWriters(message);
   TestFields();
   TestBadFiles(message);
+  TestEntities(message);
   TestNotFinite(message);
   TestNumbers();
   TestChecksum();
