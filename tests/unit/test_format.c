@@ -130,11 +130,11 @@ static void TestWriters(const char *message)
   static const struct {
     const char *suffix;
     PetscBool solid, exact; /* holds tetrahedra, brings back the same bits */
-  } kind[] = {{"obj", PETSC_FALSE, PETSC_TRUE}, {"off", PETSC_FALSE, PETSC_TRUE}, {"ply", PETSC_FALSE, PETSC_TRUE},
-              {"vtu", PETSC_TRUE, PETSC_TRUE},  {"msh", PETSC_TRUE, PETSC_TRUE},  {"h5", PETSC_TRUE, PETSC_TRUE},
-              {"vtk", PETSC_TRUE, PETSC_TRUE},  {"mesh", PETSC_TRUE, PETSC_TRUE}, {"meshb", PETSC_TRUE, PETSC_TRUE},
-              {"node", PETSC_TRUE, PETSC_TRUE}, {"ele", PETSC_TRUE, PETSC_TRUE},  {"gii", PETSC_FALSE, PETSC_FALSE},
-              {"stl", PETSC_FALSE, PETSC_FALSE}};
+  } kind[] = {{"obj", PETSC_FALSE, PETSC_TRUE},    {"off", PETSC_FALSE, PETSC_TRUE}, {"ply", PETSC_FALSE, PETSC_TRUE},
+              {"vtu", PETSC_TRUE, PETSC_TRUE},     {"msh", PETSC_TRUE, PETSC_TRUE},  {"h5", PETSC_TRUE, PETSC_TRUE},
+              {"vtk", PETSC_TRUE, PETSC_TRUE},     {"mesh", PETSC_TRUE, PETSC_TRUE}, {"meshb", PETSC_TRUE, PETSC_TRUE},
+              {"node", PETSC_TRUE, PETSC_TRUE},    {"ele", PETSC_TRUE, PETSC_TRUE},  {"gii", PETSC_FALSE, PETSC_FALSE},
+              {"white", PETSC_FALSE, PETSC_FALSE}, {"stl", PETSC_FALSE, PETSC_FALSE}};
 
   for (PetscInt size = 3; size <= 4; ++size) {
     EqmSoup soup = HardSoup(size);
@@ -289,6 +289,8 @@ static const BadFile bad_files[] = {
     {"liar.tetgen", EQM_ERR_IO, "too short", "1000000000 3 0 0\n0 0 0 0\n\f"},
     {"second.tetgen", EQM_ERR_MESH, "cells have 10 vertices", "1 3 0 0\n1 0 0 0\n\f1 10 0\n1 1 1 1 1 1 1 1 1 1 1\n"},
     {"none.gii", EQM_ERR_MESH, "no triangles", "<GIFTI Version=\"1.0\"></GIFTI>"},
+    {"quads.white", EQM_ERR_IO, "mris_convert", "\377\377\375 quadrangles"},
+    {"short.white", EQM_ERR_IO, "truncated", "\377\377\376made\n\n\1\1\1\1\1\1\1\1"},
     {"fake.h5", EQM_ERR_IO, "HDF5", "\211HDF\r\n\032\n and nothing more"},
 };
 
