@@ -43,6 +43,5 @@ def generate(args, row):
         if done.returncode:
             raise TableError(f"row {row.number}: cannot generate {name}: {done.stdout.strip()[-200:]}")
         os.replace(part, mesh)
-        for suffix in (".xmf", ".map.xmf"):
-            part.with_suffix(suffix).unlink(missing_ok=True)
+        part.with_suffix(".xmf").unlink(missing_ok=True)
     return places

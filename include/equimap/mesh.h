@@ -49,6 +49,7 @@ struct _p_EqmMesh {
   /* Input numbering. */
   PetscInt *vertex_input; /* per owned vertex */
   PetscInt *cell_input;   /* per local cell */
+  EqmSoup soup;           /* the one that the mesh was made of, for as long as that lives */
   PetscInt soup_vertices; /* vertices of the soup, unreferenced ones included */
 
   char file[PETSC_MAX_PATH_LEN]; /* that the soup was read from */

@@ -2,7 +2,7 @@
 #include "app.h"
 #include "base/stop.h"
 #include "intake/intake.h"
-#include "method/checkpoint.h"
+#include "solver/inner.h"
 #include "store/output.h"
 
 typedef struct {
@@ -213,10 +213,10 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(EqmMeshCreate(input->mapped, ledger, &mesh));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DISTRIBUTE));
   PetscCall(EqmSolverCreate(mesh, line->command, &solver));
+  PetscCall(EqmSolverSetMonitor(solver, EqmSolverMonitorText, NULL));
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmSolverSetStopFile(solver, &options->stop_file));
   PetscCall(EqmSolverSolve(solver));
-  PetscCall(EqmSolverStraighten(solver, input->mapped));
   PetscCall(EqmSolverGetMap(solver, input->mapped, &found));
   PetscCall(EqmIntakeTakeMap(input, mesh, found, &map));
   PetscCall(TakeEigenvalues(options, ledger, solver, map));

@@ -1,6 +1,6 @@
 #include "domain/projective.h"
 #include "geometry/simplex.h"
-#include "register/rotation.h"
+#include "geometry/rotation.h"
 
 /* A point of the sphere as (u, v), of either formula the one that does not cancel. */
 static void ToProjective(const PetscReal x[3], double complex w[2])

@@ -10,8 +10,6 @@
   X(Vtp)                                                                                                               \
   X(Gifti)                                                                                                             \
   X(Vtk)                                                                                                               \
-  X(Freesurfer)                                                                                                        \
-  X(Curvature)                                                                                                         \
   X(Gmsh)                                                                                                              \
   X(Medit)                                                                                                             \
   X(Meshb)                                                                                                             \

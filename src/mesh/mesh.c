@@ -231,6 +231,7 @@ PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *out)
   mesh->comm = soup->comm;
   mesh->ledger = ledger;
   mesh->cell_size = soup->cell_size;
+  mesh->soup = soup;
   mesh->soup_vertices = soup->num_vertices;
   PetscCall(PetscStrncpy(mesh->file, soup->file, sizeof(mesh->file)));
   PetscCall(EqmSoupComputeIdentity(soup, &mesh->identity));

@@ -5,26 +5,28 @@
 #include "geometry/simplex.h"
 
 typedef struct {
+  EqmMethod qiem; /* maps the covering; has the settings */
   EqmDouble covering;
   EqmMesh mesh;
-  EqmSolver sphere; /* maps the covering */
+  EqmProblem problem; /* the covering's, to the sphere */
+  EqmIterate sphere;
   PetscReal *slab;  /* places on the sphere, in the covering's numbering */
   PetscReal *place; /* the same per local vertex of the surface: its own half */
 } Covering;
 
 /* The disk's places on the northern hemisphere, the twins' on the southern (004 section 5.1, which has it the other way
    round: then the sphere would be seen from inside). */
-static PetscErrorCode LiftToSphere(EqmSolver solver, PetscReal *slab)
+static PetscErrorCode LiftToSphere(EqmMethod method, EqmIterate iterate, PetscReal *slab)
 {
-  const Covering *const data = solver->data;
-  const PetscInt n = solver->mesh->num_owned;
+  const Covering *const data = method->data;
+  const PetscInt n = method->problem->mesh->num_owned;
   PetscReal *north, *south;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(3 * n, &north, 3 * n, &south));
   for (PetscInt v = 0; v < n; v++) {
-    const PetscReal *const z = solver->place.x + 2 * v;
-    const PetscReal squared = solver->mesh->on_boundary[v] ? 1. : z[0] * z[0] + z[1] * z[1];
+    const PetscReal *const z = iterate->place.x + 2 * v;
+    const PetscReal squared = method->problem->mesh->on_boundary[v] ? 1. : z[0] * z[0] + z[1] * z[1];
     for (PetscInt k = 0; k < 2; k++) north[3 * v + k] = south[3 * v + k] = 2. * z[k] / (1. + squared);
     north[3 * v + 2] = (1. - squared) / (1. + squared);
     south[3 * v + 2] = -north[3 * v + 2];
@@ -74,9 +76,9 @@ static void CompleteFrame(const PetscReal axis[3], PetscReal first[3], PetscReal
 
 /* Stereographic projection from the point opposite to the axis, after which the circle at that height has the radius
    sqrt((1 - h)/(1 + h)); scaling the plane by its inverse is the Mobius map that makes the circle the equator. */
-static PetscErrorCode ProjectToDisk(EqmSolver solver, const PetscReal *x)
+static PetscErrorCode ProjectToDisk(EqmMethod method, EqmIterate iterate, const PetscReal *x)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = method->problem->mesh;
   PetscReal axis[3], first[3], second[3], height, scale;
 
   PetscFunctionBegin;
@@ -85,7 +87,7 @@ static PetscErrorCode ProjectToDisk(EqmSolver solver, const PetscReal *x)
   scale = PetscSqrtReal((1. + height) / (1. - height));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     const PetscReal *const p = x + 3 * v, from_pole = 1. + EqmDot3(axis, p);
-    PetscReal *const z = solver->place.x + 2 * v;
+    PetscReal *const z = iterate->place.x + 2 * v;
     z[0] = scale * EqmDot3(first, p) / from_pole;
     z[1] = scale * EqmDot3(second, p) / from_pole;
     if (mesh->on_boundary[v]) {
@@ -96,126 +98,151 @@ static PetscErrorCode ProjectToDisk(EqmSolver solver, const PetscReal *x)
   PetscFunctionReturn(0);
 }
 
-/* The disk's map from the sphere's, and what the sphere's solver says of it. */
-static PetscErrorCode TakeFromSphere(EqmSolver solver)
+/* The disk's map from the sphere's, and what is known of that. */
+static PetscErrorCode TakeFromSphere(EqmMethod method, EqmIterate iterate)
 {
-  const Covering *const data = solver->data;
-  const EqmSolver sphere = data->sphere;
+  const Covering *const data = method->data;
+  const EqmIterate sphere = data->sphere;
 
   PetscFunctionBegin;
   PetscCall(EqmMeshVerticesToInput(data->mesh, data->covering->soup, 3, sphere->place.x, data->slab));
   PetscCall(EqmDoubleToOriginal(data->covering, 3, data->slab, data->place));
-  PetscCall(EqmMeshUpdateGhosts(solver->mesh, 3, data->place));
-  PetscCall(ProjectToDisk(solver, data->place));
-  PetscCall(EqmSolverLook(solver));
-  solver->objective = sphere->objective;
-  solver->gradient_norm = sphere->gradient_norm;
-  solver->step_length = sphere->step_length;
+  PetscCall(EqmMeshUpdateGhosts(method->problem->mesh, 3, data->place));
+  PetscCall(ProjectToDisk(method, iterate, data->place));
+  PetscCall(EqmIterateUpdate(method->problem, iterate));
+  iterate->objective = sphere->objective;
+  iterate->gradient_norm = sphere->gradient_norm;
+  iterate->step_length = sphere->step_length;
   PetscFunctionReturn(0);
 }
 
-/* The covering's mesh and its solver, which begins with the lifted map. Its phases are the run's: phases do not nest.
- */
-static PetscErrorCode CreateSphere(EqmSolver solver)
+/* The covering's mesh. Its phases are the run's: phases do not nest. */
+static PetscErrorCode CreateCovering(EqmMethod method)
 {
-  const EqmLedger ledger = solver->mesh->ledger;
-  Covering *const data = solver->data;
-  PetscReal *first;
+  const EqmMesh mesh = method->problem->mesh;
+  Covering *const data = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_MINIMISE));
-  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DISTRIBUTE));
-  PetscCall(EqmDoubleCreate(solver->mesh, &data->covering));
-  PetscCall(EqmMeshCreate(data->covering->soup, ledger, &data->mesh));
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DISTRIBUTE));
+  PetscCall(EqmPhaseEnd(mesh->ledger, EQM_PHASE_MINIMISE));
+  PetscCall(EqmPhaseBegin(mesh->ledger, EQM_PHASE_DISTRIBUTE));
+  PetscCall(EqmDoubleCreate(mesh, &data->covering));
+  PetscCall(EqmMeshCreate(data->covering->soup, mesh->ledger, &data->mesh));
+  PetscCall(EqmPhaseEnd(mesh->ledger, EQM_PHASE_DISTRIBUTE));
   PetscCall(PetscMalloc1(3 * (data->covering->soup->vertex_end - data->covering->soup->vertex_start), &data->slab));
-  PetscCall(PetscMalloc1(3 * solver->mesh->num_local, &data->place));
-  PetscCall(LiftToSphere(solver, data->slab));
-  PetscCall(PetscMalloc1(3 * data->mesh->num_local, &first));
-  PetscCall(EqmMeshVerticesFromInput(data->mesh, data->covering->soup, 3, data->slab, first));
-  PetscCall(EqmSolverCreate(data->mesh, "conformal", &data->sphere));
-  data->sphere->settings = solver->settings;
-  data->sphere->settings.checkpoint[0] = data->sphere->settings.restart[0] = '\0';
-  data->sphere->method = &EqmMethodQiem;
-  PetscCall(EqmSolverSetFirstMap(data->sphere, 3, first));
-  PetscCall(PetscFree(first));
-  PetscCall(EqmSolverBegin(data->sphere));
+  PetscCall(PetscMalloc1(3 * mesh->num_local, &data->place));
+  PetscCall(EqmProblemNotify(method->problem,
+                             "double covering: %" PetscInt_FMT " vertices, %" PetscInt_FMT " triangles\n",
+                             data->mesh->num_vertices, data->mesh->num_cells));
+  PetscFunctionReturn(0);
+}
+
+/* The covering's problem, and its first map: the disk's, lifted to the sphere. */
+static PetscErrorCode CreateSphere(EqmMethod method, EqmIterate iterate)
+{
+  const EqmLedger ledger = method->problem->mesh->ledger;
+  Covering *const data = method->data;
+  EqmDomain domain;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_START));
+  PetscCall(EqmDomainCreateSphere(data->mesh, &domain));
+  PetscCall(EqmProblemCreate(domain, &EqmObjectiveConformal, &data->problem));
+  data->problem->notify = method->problem->notify;
+  data->problem->context = method->problem->context;
+  PetscCall(EqmIterateCreate(data->problem, &data->sphere));
+  PetscCall(LiftToSphere(method, iterate, data->slab));
+  PetscCall(EqmMeshVerticesFromInput(data->mesh, data->covering->soup, 3, data->slab, data->sphere->place.x));
+  PetscCall(EqmPlaceMakeFrames(domain, &data->sphere->place));
+  PetscCall(EqmIterateUpdate(data->problem, data->sphere));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_START));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_MINIMISE));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SetUp(EqmSolver solver)
+static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
+{
+  Covering *const data = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(CreateCovering(method));
+  PetscCall(CreateSphere(method, iterate));
+  PetscCall(EqmMethodSetUp(data->qiem, data->problem, data->sphere));
+  PetscCall(TakeFromSphere(method, iterate));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
+{
+  const Covering *const data = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMethodStep(data->qiem, data->sphere, outcome));
+  if (*outcome == EQM_STEP_TAKEN) {
+    data->sphere->number++;
+    PetscCall(TakeFromSphere(method, iterate));
+  }
+  PetscCall(PetscStrncpy(method->message, data->qiem->message, sizeof(method->message)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Reset(EqmMethod method)
+{
+  Covering *const data = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMethodReset(data->qiem));
+  PetscCall(EqmIterateDestroy(&data->sphere));
+  PetscCall(EqmProblemDestroy(&data->problem));
+  PetscCall(EqmMeshDestroy(&data->mesh));
+  PetscCall(EqmDoubleDestroy(&data->covering));
+  PetscCall(PetscFree(data->slab));
+  PetscCall(PetscFree(data->place));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(EqmMethod method)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMethodDestroy(&((Covering *)method->data)->qiem));
+  PetscCall(PetscFree(method->data));
+  PetscFunctionReturn(0);
+}
+
+/* All of it is the sphere's, on the covering's mesh. */
+static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
+{
+  const Covering *const data = method->data;
+
+  PetscFunctionBegin;
+  (void)iterate;
+  PetscCall(EqmStateUseMesh(state, data->mesh));
+  PetscCall(EqmStatePlace(state, data->problem->domain, "sphere", &data->sphere->place));
+  PetscCall(EqmMethodVisitState(data->qiem, data->sphere, state));
+  PetscCall(EqmStateUseMesh(state, method->problem->mesh));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMethodSetFromOptions(((Covering *)method->data)->qiem, PetscOptionsObject));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMethodCreateCovering(EqmMethod method)
 {
   Covering *data;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&data));
-  solver->data = data;
-  PetscCall(CreateSphere(solver));
-  if (!solver->settings.quiet)
-    PetscCall(PetscPrintf(solver->comm, "double covering: %" PetscInt_FMT " vertices, %" PetscInt_FMT " triangles\n",
-                          data->mesh->num_vertices, data->mesh->num_cells));
-  PetscCall(data->sphere->method->set_up(data->sphere));
-  PetscCall(TakeFromSphere(solver));
+  method->data = data;
+  method->purpose = "Riemann map by the double covering and the quasi-implicit Euler method (004)";
+  PetscCall(EqmMethodCreate(method->comm, "qiem", &data->qiem));
+  method->ops = (EqmMethodOps){.set_from_options = SetFromOptions,
+                               .set_up = SetUp,
+                               .step = Step,
+                               .state = State,
+                               .reset = Reset,
+                               .destroy = Destroy};
   PetscFunctionReturn(0);
 }
-
-static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
-{
-  const EqmSolver sphere = ((Covering *)solver->data)->sphere;
-
-  PetscFunctionBegin;
-  PetscCall(sphere->method->step(sphere, outcome));
-  if (*outcome == EQM_STEP_TAKEN) {
-    PetscCall(TakeFromSphere(solver));
-  } else {
-    PetscCall(PetscStrncpy(solver->message, sphere->message, sizeof(solver->message)));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Destroy(EqmSolver solver)
-{
-  Covering *const data = solver->data;
-
-  PetscFunctionBegin;
-  PetscCall(data->sphere->method->destroy(data->sphere));
-  PetscCall(EqmSolverDestroy(&data->sphere));
-  PetscCall(EqmMeshDestroy(&data->mesh));
-  PetscCall(EqmDoubleDestroy(&data->covering));
-  PetscCall(PetscFree(data->slab));
-  PetscCall(PetscFree(data->place));
-  PetscCall(PetscFree(solver->data));
-  PetscFunctionReturn(0);
-}
-
-/* All of it is the sphere's, on the covering's mesh. */
-static PetscErrorCode State(EqmSolver solver, EqmState state)
-{
-  const Covering *const data = solver->data;
-
-  PetscFunctionBegin;
-  PetscCall(EqmStateUseMesh(state, data->mesh));
-  PetscCall(EqmStatePlace(state, data->sphere->domain, "sphere", &data->sphere->place));
-  PetscCall(data->sphere->method->state(data->sphere, state));
-  PetscCall(EqmStateUseMesh(state, solver->mesh));
-  PetscFunctionReturn(0);
-}
-
-/* The sphere's solver has the same. */
-static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmMethodQiem.options(solver, PetscOptionsObject));
-  PetscFunctionReturn(0);
-}
-
-const EqmMethod EqmMethodCovering = {
-    .name = "qiem",
-    .purpose = "Riemann map by the double covering and the quasi-implicit Euler method (004)",
-    .options = Options,
-    .set_up = SetUp,
-    .step = Step,
-    .state = State,
-    .destroy = Destroy,
-};

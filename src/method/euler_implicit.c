@@ -4,6 +4,7 @@
 #include "geometry/simplex.h"
 
 typedef struct {
+  EqmFlowSettings flow;
   EqmGeneral matrix;
   EqmUnknowns unknowns;
   PetscInt *start;
@@ -19,13 +20,13 @@ typedef struct {
 
 PetscErrorCode EqmImplicitResidual(const EqmImplicitStep *step, const EqmPlace *from, PetscReal *residual)
 {
-  const EqmSolver solver = step->solver;
-  const PetscInt n = solver->mesh->num_owned;
+  const EqmProblem problem = step->problem;
+  const PetscInt n = problem->mesh->num_owned;
   PetscReal *normal;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n, &normal));
-  PetscCall(EqmFlowLaplacian(solver, step->place, residual, normal));
+  PetscCall(EqmFlowLaplacian(problem, step->place, residual, normal));
   for (PetscInt k = 0; k < 3 * n; k++) {
     const PetscReal x = step->place->x[k];
     residual[k] = x - from->x[k] + step->dt * (residual[k] - normal[k / 3] * x);
@@ -37,7 +38,7 @@ PetscErrorCode EqmImplicitResidual(const EqmImplicitStep *step, const EqmPlace *
 void EqmImplicitCell(void *context, PetscInt cell, PetscReal *matrix)
 {
   const EqmImplicitStep *const step = context;
-  const PetscInt *const v = step->solver->mesh->cells + 3 * cell;
+  const PetscInt *const v = step->problem->mesh->cells + 3 * cell;
   const PetscReal *const w = step->weights + 3 * cell, *const x = step->place->x;
 
   for (PetscInt a = 0; a < 3; a++) {
@@ -55,15 +56,13 @@ void EqmImplicitCell(void *context, PetscInt cell, PetscReal *matrix)
   }
 }
 
-static PetscErrorCode SetUp(EqmSolver solver)
+static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = method->problem->mesh;
   unsigned char *count;
-  Implicit *s;
+  Implicit *const s = method->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&s));
-  solver->data = s;
   PetscCall(PetscMalloc1(mesh->num_local, &count));
   PetscCall(PetscMalloc1(mesh->num_local, &s->start));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
@@ -72,27 +71,28 @@ static PetscErrorCode SetUp(EqmSolver solver)
   }
   s->unknowns = (EqmUnknowns){3 * mesh->num_owned, 3 * mesh->vertex_start, s->start, count};
   PetscCall(EqmGeneralCreate(mesh, &s->unknowns, PETSC_FALSE, PETSC_TRUE, &s->matrix));
-  PetscCall(EqmPlaceCreate(solver->domain, &s->trial));
+  PetscCall(EqmPlaceCreate(method->problem->domain, &s->trial));
   PetscCall(PetscMalloc1(6 * mesh->num_owned, &s->residual)); /* and room for it in columns */
-  s->dt = solver->settings.flow_step > 0. ? solver->settings.flow_step : 5.;
-  s->step = (EqmImplicitStep){.solver = solver, .place = &s->trial};
-  PetscCall(EqmAngleWeights(solver, &s->step.weights));
-  PetscCall(EqmFlowAccept(solver, &solver->place, 0.));
+  s->dt = s->flow.step > 0. ? s->flow.step : 5.;
+  s->step = (EqmImplicitStep){.problem = method->problem, .place = &s->trial};
+  PetscCall(EqmProblemGetAngleWeights(method->problem, &s->step.weights));
+  s->ended = PETSC_FALSE;
+  PetscCall(EqmFlowAccept(method->problem, iterate, &iterate->place, 0.));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode State(EqmSolver solver, EqmState state)
+static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
-  Implicit *const s = solver->data;
+  Implicit *const s = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmFlowState(solver, state, &s->dt, &s->ended));
+  PetscCall(EqmFlowState(method, state, &s->dt, &s->ended));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(EqmSolver solver)
+static PetscErrorCode Reset(EqmMethod method)
 {
-  Implicit *const s = solver->data;
+  Implicit *const s = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmGeneralDestroy(&s->matrix));
@@ -100,45 +100,44 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscCall(PetscFree(s->start));
   PetscCall(EqmPlaceDestroy(&s->trial));
   PetscCall(PetscFree(s->residual));
-  PetscCall(PetscFree(solver->data));
   PetscFunctionReturn(0);
 }
 
 /* Residual at the trial and its norm. */
-static PetscErrorCode Evaluate(EqmSolver solver, PetscReal *norm)
+static PetscErrorCode Evaluate(EqmMethod method, EqmIterate iterate, PetscReal *norm)
 {
-  Implicit *const s = solver->data;
+  Implicit *const s = method->data;
   PetscReal sum = 0.;
 
   PetscFunctionBegin;
-  PetscCall(EqmImplicitResidual(&s->step, &solver->place, s->residual));
-  for (PetscInt k = 0; k < 3 * solver->mesh->num_owned; k++) sum += PetscSqr(s->residual[k]);
-  PetscCall(MPIU_Allreduce(&sum, norm, 1, MPIU_REAL, MPIU_SUM, solver->comm));
+  PetscCall(EqmImplicitResidual(&s->step, &iterate->place, s->residual));
+  for (PetscInt k = 0; k < 3 * method->problem->mesh->num_owned; k++) sum += PetscSqr(s->residual[k]);
+  PetscCall(MPIU_Allreduce(&sum, norm, 1, MPIU_REAL, MPIU_SUM, method->problem->comm));
   *norm = PetscSqrtReal(*norm);
   PetscFunctionReturn(0);
 }
 
 /* Newton's method from the present map (004 (9)) with the present time step; the trial is its result. */
-static PetscErrorCode Newton(EqmSolver solver, PetscBool *success, PetscInt *iterations)
+static PetscErrorCode Newton(EqmMethod method, EqmIterate iterate, PetscBool *success, PetscInt *iterations)
 {
   enum { MOST_ITERATIONS = 12 };
-  Implicit *const s = solver->data;
-  const PetscReal small = 1e-11 * PetscSqrtReal((PetscReal)solver->mesh->num_vertices);
+  Implicit *const s = method->data;
+  const PetscReal small = 1e-11 * PetscSqrtReal((PetscReal)method->problem->mesh->num_vertices);
   PetscReal norm, first;
 
   PetscFunctionBegin;
   s->step.dt = s->dt;
   *success = PETSC_TRUE;
-  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &s->trial));
-  PetscCall(Evaluate(solver, &first));
+  PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &s->trial));
+  PetscCall(Evaluate(method, iterate, &first));
   norm = first;
   for (*iterations = 0; norm > small && *success; (*iterations)++) {
     PetscCall(EqmGeneralFactor(s->matrix, EqmImplicitCell, &s->step, 1., success));
     if (!*success) break;
     PetscCall(EqmGeneralSolve(s->matrix, 1, s->residual));
-    for (PetscInt k = 0; k < 3 * solver->mesh->num_owned; k++) s->trial.x[k] -= s->residual[k];
-    PetscCall(EqmMeshUpdateGhosts(solver->mesh, 3, s->trial.x));
-    PetscCall(Evaluate(solver, &norm));
+    for (PetscInt k = 0; k < 3 * method->problem->mesh->num_owned; k++) s->trial.x[k] -= s->residual[k];
+    PetscCall(EqmMeshUpdateGhosts(method->problem->mesh, 3, s->trial.x));
+    PetscCall(Evaluate(method, iterate, &norm));
     *success = (PetscBool)(norm <= 10. * first && *iterations < MOST_ITERATIONS);
   }
   PetscFunctionReturn(0);
@@ -146,11 +145,11 @@ static PetscErrorCode Newton(EqmSolver solver, PetscBool *success, PetscInt *ite
 
 /* A step whose system Newton's method does not solve, or after which the energy is higher, is halved; one that took few
    iterations is followed by a longer one. */
-static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
   enum { FEW = 4 };
-  Implicit *const s = solver->data;
-  const PetscReal before = solver->totals.energy;
+  Implicit *const s = method->data;
+  const PetscReal before = iterate->totals.energy;
   PetscReal energy = INFINITY, dt = s->dt;
   PetscInt iterations = 0;
 
@@ -158,30 +157,34 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   *outcome = EQM_STEP_CONVERGED;
   if (s->ended) PetscFunctionReturn(0);
   *outcome = EQM_STEP_STALLED;
-  while (!(energy <= before + solver->settings.flow_tol)) {
+  while (!(energy <= before + s->flow.tol)) {
     PetscBool success;
     if (s->dt < SHORTEST) PetscFunctionReturn(0);
     dt = s->dt;
-    PetscCall(Newton(solver, &success, &iterations));
+    PetscCall(Newton(method, iterate, &success, &iterations));
     if (success) {
-      PetscCall(EqmFlowNormalise(solver, solver->settings.flow_moebius, &s->trial));
-      PetscCall(EqmFlowEnergy(solver, &s->trial, &energy));
+      PetscCall(EqmFlowNormalise(method->problem, s->flow.moebius, &s->trial));
+      PetscCall(EqmFlowEnergy(method->problem, &s->trial, &energy));
     }
     s->dt *= .5;
   }
   s->dt = iterations <= FEW ? 1.5 * dt : dt;
-  PetscCall(EqmFlowAccept(solver, &s->trial, dt));
-  PetscCall(EqmFlowJudge(solver, energy - before, &s->ended));
+  PetscCall(EqmFlowAccept(method->problem, iterate, &s->trial, dt));
+  PetscCall(EqmFlowJudge(method, energy - before, &s->ended));
   *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
 }
 
-const EqmMethod EqmMethodEulerImplicit = {
-    .name = "euler-implicit",
-    .purpose = "implicit Euler method (004 (8)): Newton's method on the coupled system in each step",
-    .options = EqmFlowOptions,
-    .set_up = SetUp,
-    .step = Step,
-    .state = State,
-    .destroy = Destroy,
-};
+PetscErrorCode EqmMethodCreateEulerImplicit(EqmMethod method)
+{
+  Implicit *s;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&s));
+  s->flow.tol = EQM_FLOW_TOL;
+  method->data = s;
+  method->purpose = "implicit Euler method (004 (8)): Newton's method on the coupled system in each step";
+  method->ops = (EqmMethodOps){
+      .set_from_options = EqmFlowSetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
+  PetscFunctionReturn(0);
+}

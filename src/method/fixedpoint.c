@@ -8,68 +8,65 @@ typedef struct {
   EqmPlace to;
 } FixedPoint;
 
-static PetscErrorCode SetUp(EqmSolver solver)
+static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
-  const EqmMesh mesh = solver->mesh;
-  FixedPoint *fp;
+  const EqmMesh mesh = method->problem->mesh;
+  FixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&fp));
-  solver->data = fp;
   PetscCall(PetscMalloc4(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &fp->weights, 2 * mesh->num_owned,
                          &fp->columns, 2 * mesh->num_local, &fp->inverted, mesh->num_local, &fp->group));
   for (PetscInt v = 0; v < mesh->num_local; v++) fp->group[v] = mesh->on_boundary[v] ? 1 : 0;
-  PetscCall(EqmPlaceCreate(solver->domain, &fp->to));
-  solver->gradient_norm = -1.;
-  solver->objective = solver->totals.energy;
+  PetscCall(EqmPlaceCreate(method->problem->domain, &fp->to));
+  iterate->gradient_norm = -1.;
+  iterate->objective = iterate->totals.energy;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(EqmSolver solver)
+static PetscErrorCode Reset(EqmMethod method)
 {
-  FixedPoint *const fp = solver->data;
+  FixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
   PetscCall(PetscFree4(fp->weights, fp->columns, fp->inverted, fp->group));
   PetscCall(EqmPlaceDestroy(&fp->to));
-  PetscCall(PetscFree(solver->data));
   PetscFunctionReturn(0);
 }
 
 /* New columns for one group of vertices: -L_gg^-1 L_gh z_h, where `z` (per local vertex, two coordinates) is zero on
  * the group. */
-static PetscErrorCode SolveGroup(EqmSolver solver, signed char group, const PetscReal *z)
+static PetscErrorCode SolveGroup(EqmMethod method, EqmIterate iterate, signed char group, const PetscReal *z)
 {
-  FixedPoint *const fp = solver->data;
-  const PetscInt n = solver->mesh->num_owned;
+  FixedPoint *const fp = method->data;
+  const PetscInt n = method->problem->mesh->num_owned;
   PetscReal *rhs;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2 * n, &rhs));
-  PetscCall(EqmLaplacianApply(solver->mesh, fp->weights, 2, z, rhs));
+  PetscCall(EqmLaplacianApply(method->problem->mesh, fp->weights, 2, z, rhs));
   for (PetscInt v = 0; v < n; v++) {
     for (PetscInt c = 0; c < 2; c++) fp->columns[c * n + v] = fp->group[v] == group ? -rhs[2 * v + c] : 0.;
   }
   PetscCall(PetscFree(rhs));
-  PetscCall(EqmGroupSolve(solver, 2, fp->columns));
+  PetscCall(EqmGroupSolve(method->problem, 2, fp->columns));
   PetscFunctionReturn(0);
 }
 
 /* 000 (14b): the boundary follows the interior, inverted in the circle; then centred (14d) and put on the circle (14e).
  */
-static PetscErrorCode MoveBoundary(EqmSolver solver)
+static PetscErrorCode MoveBoundary(EqmMethod method, EqmIterate iterate)
 {
-  FixedPoint *const fp = solver->data;
-  const EqmMesh mesh = solver->mesh;
+  FixedPoint *const fp = method->data;
+  const EqmMesh mesh = method->problem->mesh;
   const PetscInt n = mesh->num_owned;
   PetscReal sum[2] = {0., 0.};
 
   PetscFunctionBegin;
   for (PetscInt v = 0; v < mesh->num_local; v++) {
-    const PetscReal *const x = solver->place.x + 2 * v, squared = x[0] * x[0] + x[1] * x[1];
+    const PetscReal *const x = iterate->place.x + 2 * v, squared = x[0] * x[0] + x[1] * x[1];
     for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = fp->group[v] == 0 ? x[c] / squared : 0.;
   }
-  PetscCall(SolveGroup(solver, 1, fp->inverted));
+  PetscCall(SolveGroup(method, iterate, 1, fp->inverted));
   for (PetscInt v = 0; v < n; v++) {
     if (fp->group[v] != 1) continue;
     for (PetscInt c = 0; c < 2; c++) sum[c] += fp->columns[c * n + v];
@@ -80,82 +77,86 @@ static PetscErrorCode MoveBoundary(EqmSolver solver)
     const PetscReal b[2] = {fp->columns[v] - sum[0] / mesh->num_boundary_vertices,
                             fp->columns[n + v] - sum[1] / mesh->num_boundary_vertices};
     const PetscReal length = PetscSqrtReal(b[0] * b[0] + b[1] * b[1]);
-    for (PetscInt c = 0; c < 2; c++) solver->place.x[2 * v + c] = b[c] / length;
+    for (PetscInt c = 0; c < 2; c++) iterate->place.x[2 * v + c] = b[c] / length;
   }
-  PetscCall(EqmMeshUpdateGhosts(mesh, 2, solver->place.x));
+  PetscCall(EqmMeshUpdateGhosts(mesh, 2, iterate->place.x));
   PetscFunctionReturn(0);
 }
 
 /* One pass of 000 (14) in the order that reproduces the published table: boundary first, then the interior with the new
    boundary, both with L_S of the old map. */
-static PetscErrorCode StepOnDisk(EqmSolver solver)
+static PetscErrorCode StepOnDisk(EqmMethod method, EqmIterate iterate)
 {
-  FixedPoint *const fp = solver->data;
-  const EqmMesh mesh = solver->mesh;
+  FixedPoint *const fp = method->data;
+  const EqmMesh mesh = method->problem->mesh;
   const PetscInt n = mesh->num_owned;
 
   PetscFunctionBegin;
-  PetscCall(EqmGroupFactor(solver, fp->weights, fp->group, NULL));
-  PetscCall(MoveBoundary(solver));
+  PetscCall(EqmGroupFactor(method->problem, fp->weights, fp->group, NULL));
+  PetscCall(MoveBoundary(method, iterate));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
-    for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = fp->group[v] == 1 ? solver->place.x[2 * v + c] : 0.;
+    for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = fp->group[v] == 1 ? iterate->place.x[2 * v + c] : 0.;
   }
-  PetscCall(SolveGroup(solver, 0, fp->inverted));
+  PetscCall(SolveGroup(method, iterate, 0, fp->inverted));
   for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt c = 0; c < 2 && fp->group[v] == 0; c++) solver->place.x[2 * v + c] = fp->columns[c * n + v];
+    for (PetscInt c = 0; c < 2 && fp->group[v] == 0; c++) iterate->place.x[2 * v + c] = fp->columns[c * n + v];
   }
-  PetscCall(EqmMeshUpdateGhosts(mesh, 2, solver->place.x));
+  PetscCall(EqmMeshUpdateGhosts(mesh, 2, iterate->place.x));
   PetscFunctionReturn(0);
 }
 
 /* One pass of the iteration for the domain. */
-static PetscErrorCode Pass(EqmSolver solver)
+static PetscErrorCode Pass(EqmMethod method, EqmIterate iterate)
 {
-  FixedPoint *const fp = solver->data;
+  FixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
-  if (solver->domain->curved_image) {
-    PetscCall(EqmSphereFixedPointStep(solver, solver->iteration, fp->weights));
+  if (method->problem->domain->curved_image) {
+    PetscCall(EqmSphereFixedPointStep(method->problem, iterate, iterate->number, fp->weights));
     PetscFunctionReturn(0);
   }
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, fp->weights));
-  if (solver->domain->kind_of_boundary == EQM_VERTEX_CIRCLE) {
-    PetscCall(StepOnDisk(solver));
+  PetscCall(EqmLaplacianWeights(method->problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, fp->weights));
+  if (method->problem->domain->kind_of_boundary == EQM_VERTEX_CIRCLE) {
+    PetscCall(StepOnDisk(method, iterate));
   } else {
-    PetscCall(EqmHarmonicMap(solver, fp->weights, &solver->place, &fp->to));
-    PetscCall(EqmPlaceCopy(solver->domain, &fp->to, &solver->place));
+    PetscCall(EqmHarmonicMap(method->problem, fp->weights, &iterate->place, &fp->to));
+    PetscCall(EqmPlaceCopy(method->problem->domain, &fp->to, &iterate->place));
   }
   PetscFunctionReturn(0);
 }
 
 /* On the sphere the iteration has no limit to go to: it ends where the energy first rises (001 Algorithm 2). */
-static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
-  FixedPoint *const fp = solver->data;
-  const PetscReal before = solver->totals.energy;
+  FixedPoint *const fp = method->data;
+  const PetscReal before = iterate->totals.energy;
 
   PetscFunctionBegin;
   *outcome = EQM_STEP_TAKEN;
-  if (solver->domain->curved_image) PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &fp->to));
-  PetscCall(Pass(solver));
-  PetscCall(EqmSolverLook(solver));
-  if (solver->domain->curved_image && !(solver->totals.energy < before)) {
-    PetscCall(EqmPlaceCopy(solver->domain, &fp->to, &solver->place));
-    PetscCall(EqmSolverLook(solver));
-    PetscCall(PetscStrncpy(solver->message,
+  if (method->problem->domain->curved_image) PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &fp->to));
+  PetscCall(Pass(method, iterate));
+  PetscCall(EqmIterateUpdate(method->problem, iterate));
+  if (method->problem->domain->curved_image && !(iterate->totals.energy < before)) {
+    PetscCall(EqmPlaceCopy(method->problem->domain, &fp->to, &iterate->place));
+    PetscCall(EqmIterateUpdate(method->problem, iterate));
+    PetscCall(PetscStrncpy(method->message,
                            "the next fixed-point step would raise the energy: there the iteration ends",
-                           sizeof(solver->message)));
+                           sizeof(method->message)));
     *outcome = EQM_STEP_CONVERGED;
   }
-  solver->step_length = 1.;
-  solver->objective = solver->totals.energy;
+  iterate->step_length = 1.;
+  iterate->objective = iterate->totals.energy;
   PetscFunctionReturn(0);
 }
 
-const EqmMethod EqmMethodFixedPoint = {
-    .name = "fixed-point",
-    .purpose = "stretch energy minimisation by fixed-point iteration (000 (14), 001 Algorithm 2, 002 Algorithm 1)",
-    .set_up = SetUp,
-    .step = Step,
-    .destroy = Destroy,
-};
+PetscErrorCode EqmMethodCreateFixedPoint(EqmMethod method)
+{
+  FixedPoint *fp;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&fp));
+  method->data = fp;
+  method->purpose = "stretch energy minimisation by fixed-point iteration (000 (14), 001 Algorithm 2, 002 Algorithm 1)";
+  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .reset = Reset};
+  PetscFunctionReturn(0);
+}

@@ -5,29 +5,40 @@
 
 #include "method/method.h"
 
+/* What the three methods are steered by: the beginning of their data. */
+typedef struct {
+  PetscReal step, tol; /* -flow_step, -flow_tol */
+  PetscBool moebius;   /* -flow_moebius */
+} EqmFlowSettings;
+
+/* -flow_tol unless told otherwise. */
+#define EQM_FLOW_TOL 1e-9
+
 /* (A f)_i per owned vertex, and unless NULL <A f, f>_i = (A f)_i . f_i (004 Definition 3.1). Not collective. */
-PETSC_INTERN PetscErrorCode EqmFlowLaplacian(EqmSolver solver, const EqmPlace *place, PetscReal *af, PetscReal *normal);
+PETSC_INTERN PetscErrorCode EqmFlowLaplacian(EqmProblem problem, const EqmPlace *place, PetscReal *af,
+                                             PetscReal *normal);
 /* Norm of the flow's velocity. Collective. */
-PETSC_INTERN PetscErrorCode EqmFlowSpeed(EqmSolver solver, const EqmPlace *place, PetscReal *speed);
+PETSC_INTERN PetscErrorCode EqmFlowSpeed(EqmProblem problem, const EqmPlace *place, PetscReal *speed);
 /* Subtract the mass centre and go back to the sphere (004 Algorithm 5.1, lines 9 and 10), or instead go back and centre
    by a Mobius map. Collective. */
-PETSC_INTERN PetscErrorCode EqmFlowNormalise(EqmSolver solver, PetscBool moebius, EqmPlace *place);
+PETSC_INTERN PetscErrorCode EqmFlowNormalise(EqmProblem problem, PetscBool moebius, EqmPlace *place);
 /* The Dirichlet energy. Counts an evaluation. Collective. */
-PETSC_INTERN PetscErrorCode EqmFlowEnergy(EqmSolver solver, const EqmPlace *place, PetscReal *energy);
+PETSC_INTERN PetscErrorCode EqmFlowEnergy(EqmProblem problem, const EqmPlace *place, PetscReal *energy);
 /* `place` becomes the present map, reached by a time step. Collective. */
-PETSC_INTERN PetscErrorCode EqmFlowAccept(EqmSolver solver, const EqmPlace *place, PetscReal time_step);
+PETSC_INTERN PetscErrorCode EqmFlowAccept(EqmProblem problem, EqmIterate iterate, const EqmPlace *place,
+                                          PetscReal time_step);
 /* The options -flow_*, which the three methods share. Collective. */
-PETSC_INTERN PetscErrorCode EqmFlowOptions(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+PETSC_INTERN PetscErrorCode EqmFlowSetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject);
 /* For the `state` of the three methods: the time step, and whether the method has come to its end. Collective. */
-PETSC_INTERN PetscErrorCode EqmFlowState(EqmSolver solver, EqmState state, PetscReal *time_step, PetscBool *ended);
+PETSC_INTERN PetscErrorCode EqmFlowState(EqmMethod method, EqmState state, PetscReal *time_step, PetscBool *ended);
 /* Has the energy changed by less than -flow_tol? Then the method has come to its end, says the message. Not collective.
  */
-PETSC_INTERN PetscErrorCode EqmFlowJudge(EqmSolver solver, PetscReal change, PetscBool *ended);
+PETSC_INTERN PetscErrorCode EqmFlowJudge(EqmMethod method, PetscReal change, PetscBool *ended);
 
 /* ---- the system of an implicit Euler step (src/method/euler_implicit.c) */
 typedef struct {
-  EqmSolver solver;
-  const PetscReal *weights; /* of EqmAngleWeights */
+  EqmProblem problem;
+  const PetscReal *weights; /* of EqmProblemGetAngleWeights */
   const EqmPlace *place;    /* the unknown f' */
   PetscReal dt;
 } EqmImplicitStep;

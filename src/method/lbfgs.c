@@ -7,6 +7,8 @@
 static const char *const line_searches[] = {"armijo", "wolfe", "EqmLbfgsLineSearch", "EQM_SEARCH_", NULL};
 
 typedef struct {
+  PetscInt refresh, memory;
+  EqmLbfgsLineSearch line_search;
   EqmMetric metric;
   EqmPairs pairs;
   PetscReal *image;
@@ -14,40 +16,38 @@ typedef struct {
   Vec gradient, trial_gradient, direction;
 } Lbfgs;
 
-PetscErrorCode EqmLbfgsRestart(EqmSolver solver)
+PetscErrorCode EqmLbfgsRestart(EqmMethod method, EqmIterate iterate)
 {
-  Lbfgs *const lb = solver->data;
+  Lbfgs *const lb = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmPairsForget(lb->pairs));
-  PetscCall(EqmMetricRefresh(solver, lb->metric));
-  PetscCall(
-      solver->problem->objective->evaluate(solver, &solver->place, solver->image, &solver->objective, lb->gradient));
-  PetscCall(VecNorm(lb->gradient, NORM_2, &solver->gradient_norm));
+  PetscCall(EqmMetricRefresh(lb->metric, &iterate->place));
+  PetscCall(method->problem->objective->evaluate(method->problem, iterate, &iterate->place, iterate->image,
+                                                 &iterate->objective, lb->gradient));
+  PetscCall(VecNorm(lb->gradient, NORM_2, &iterate->gradient_norm));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SetUp(EqmSolver solver)
+static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
-  Lbfgs *lb;
+  Lbfgs *const lb = method->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&lb));
-  solver->data = lb;
-  PetscCall(EqmMetricCreate(solver, &lb->metric));
-  PetscCall(EqmPlaceCreate(solver->domain, &lb->trial));
-  PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &lb->image));
-  PetscCall(EqmDomainCreateVec(solver->domain, &lb->gradient));
+  PetscCall(EqmMetricCreate(method->problem, &lb->metric));
+  PetscCall(EqmPlaceCreate(method->problem->domain, &lb->trial));
+  PetscCall(PetscMalloc1(method->problem->mesh->num_local_cells, &lb->image));
+  PetscCall(EqmDomainCreateVec(method->problem->domain, &lb->gradient));
   PetscCall(VecDuplicate(lb->gradient, &lb->trial_gradient));
   PetscCall(VecDuplicate(lb->gradient, &lb->direction));
-  PetscCall(EqmPairsCreate(lb->gradient, solver->settings.lbfgs_memory, &lb->pairs));
-  PetscCall(EqmLbfgsRestart(solver));
+  PetscCall(EqmPairsCreate(lb->gradient, lb->memory, &lb->pairs));
+  PetscCall(EqmLbfgsRestart(method, iterate));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(EqmSolver solver)
+static PetscErrorCode Reset(EqmMethod method)
 {
-  Lbfgs *const lb = solver->data;
+  Lbfgs *const lb = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmMetricDestroy(&lb->metric));
@@ -57,39 +57,39 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscCall(VecDestroy(&lb->gradient));
   PetscCall(VecDestroy(&lb->trial_gradient));
   PetscCall(VecDestroy(&lb->direction));
-  PetscCall(PetscFree(solver->data));
   PetscFunctionReturn(0);
 }
 
 /* q <- M^-1 q on the scale of the inverse Hessian. */
 static PetscErrorCode ApplyMetric(void *context, Vec q)
 {
-  const EqmSolver solver = context;
-  Lbfgs *const lb = solver->data;
+  const EqmMethod method = context;
+  Lbfgs *const lb = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmMetricApply(solver, lb->metric, q, q));
-  PetscCall(VecScale(q, solver->problem->objective->inverse_scale * solver->domain->target_measure));
+  PetscCall(EqmMetricApply(lb->metric, &method->iterate->place, q, q));
+  PetscCall(VecScale(q, method->problem->objective->inverse_scale * method->problem->domain->target_measure));
   PetscFunctionReturn(0);
 }
 
 /* Armijo, with the parabola's minimum as the next guess; leaves the trial's map, energy and gradient. `t` 0: no
  * decrease. */
-static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t, PetscReal *energy)
+static PetscErrorCode Backtrack(EqmMethod method, EqmIterate iterate, PetscReal slope, PetscReal *t, PetscReal *energy)
 {
-  Lbfgs *const lb = solver->data;
+  Lbfgs *const lb = method->data;
   enum { MOST_TRIALS = 25 };
 
   PetscFunctionBegin;
   *t = 1.;
-  if (solver->problem->objective->longest_step)
-    PetscCall(solver->problem->objective->longest_step(solver, lb->direction, t));
+  if (method->problem->objective->longest_step)
+    PetscCall(method->problem->objective->longest_step(method->problem, iterate, lb->direction, t));
   for (PetscInt trial = 0; trial < MOST_TRIALS; trial++) {
     PetscBool in_order;
-    PetscCall(EqmDomainMove(solver->domain, &solver->place, *t, lb->direction, &lb->trial));
-    PetscCall(EqmDomainBoundaryInOrder(solver->domain, &lb->trial, &in_order));
-    PetscCall(solver->problem->objective->evaluate(solver, &lb->trial, lb->image, energy, lb->trial_gradient));
-    const PetscReal change = *energy - solver->objective;
+    PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, *t, lb->direction, &lb->trial));
+    PetscCall(EqmDomainBoundaryInOrder(method->problem->domain, &lb->trial, &in_order));
+    PetscCall(method->problem->objective->evaluate(method->problem, iterate, &lb->trial, lb->image, energy,
+                                                   lb->trial_gradient));
+    const PetscReal change = *energy - iterate->objective;
     if (in_order && change <= 1e-4 * *t * slope) PetscFunctionReturn(0);
     *t = in_order ? PetscMax(.1 * *t, PetscMin(.5 * *t, -.5 * *t * *t * slope / (change - *t * slope))) : .5 * *t;
   }
@@ -100,12 +100,14 @@ static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t,
 /* Frames go with the motion: the velocity keeps its coordinates along the whole geodesic. */
 static PetscErrorCode TryStep(void *context, PetscReal t, PetscReal *value, PetscReal *slope)
 {
-  const EqmSolver solver = context;
-  Lbfgs *const lb = solver->data;
+  const EqmMethod method = context;
+  const EqmIterate iterate = method->iterate;
+  Lbfgs *const lb = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmDomainMove(solver->domain, &solver->place, t, lb->direction, &lb->trial));
-  PetscCall(solver->problem->objective->evaluate(solver, &lb->trial, lb->image, value, lb->trial_gradient));
+  PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, t, lb->direction, &lb->trial));
+  PetscCall(
+      method->problem->objective->evaluate(method->problem, iterate, &lb->trial, lb->image, value, lb->trial_gradient));
   PetscCall(VecDot(lb->trial_gradient, lb->direction, slope));
   PetscFunctionReturn(0);
 }
@@ -119,65 +121,85 @@ static PetscBool IsRefreshDue(PetscInt first, PetscInt iteration)
   return (PetscBool)(due > 0 && due == iteration);
 }
 
-static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
-  Lbfgs *const lb = solver->data;
+  Lbfgs *const lb = method->data;
   PetscReal slope, t, energy;
 
   PetscFunctionBegin;
-  if (!solver->problem->objective->fixed_metric && IsRefreshDue(solver->settings.lbfgs_refresh, solver->iteration))
-    PetscCall(EqmMetricRefresh(solver, lb->metric));
+  if (!method->problem->objective->fixed_metric && IsRefreshDue(lb->refresh, iterate->number))
+    PetscCall(EqmMetricRefresh(lb->metric, &iterate->place));
   PetscCall(VecCopy(lb->gradient, lb->direction));
-  PetscCall(EqmPairsDirection(lb->pairs, ApplyMetric, solver, lb->direction));
+  PetscCall(EqmPairsDirection(lb->pairs, ApplyMetric, method, lb->direction));
   PetscCall(VecScale(lb->direction, -1.));
   PetscCall(VecDot(lb->gradient, lb->direction, &slope));
   *outcome = EQM_STEP_STALLED;
   if (!(slope < 0.)) PetscFunctionReturn(0);
-  if ((int)solver->settings.lbfgs_line_search == EQM_SEARCH_WOLFE)
-    PetscCall(EqmWolfeSearch(TryStep, solver, solver->objective, slope, &t, &energy));
+  if (lb->line_search == EQM_SEARCH_WOLFE)
+    PetscCall(EqmWolfeSearch(TryStep, method, iterate->objective, slope, &t, &energy));
   else
-    PetscCall(Backtrack(solver, slope, &t, &energy));
+    PetscCall(Backtrack(method, iterate, slope, &t, &energy));
   if (t == 0.) PetscFunctionReturn(0);
   PetscCall(EqmPairsAdd(lb->pairs, t, lb->direction, lb->gradient, lb->trial_gradient));
   PetscCall(VecCopy(lb->trial_gradient, lb->gradient));
-  PetscCall(EqmSolverAccept(solver, &lb->trial, lb->image, energy, t));
-  PetscCall(VecNorm(lb->gradient, NORM_2, &solver->gradient_norm));
+  PetscCall(EqmIterateAccept(method->problem, iterate, &lb->trial, lb->image, energy, t));
+  PetscCall(VecNorm(lb->gradient, NORM_2, &iterate->gradient_norm));
   *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode State(EqmSolver solver, EqmState state)
+static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
-  Lbfgs *const lb = solver->data;
+  Lbfgs *const lb = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmMetricState(solver, lb->metric, state));
-  PetscCall(EqmPairsStateDofs(lb->pairs, state, solver->domain));
+  PetscCall(EqmMetricState(lb->metric, state));
+  PetscCall(EqmPairsStateDofs(lb->pairs, state, method->problem->domain));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
 {
-  EqmSettings *const set = &solver->settings;
+  Lbfgs *const lb = method->data;
+  PetscEnum search = (PetscEnum)lb->line_search;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsBoundedInt(
       "-lbfgs_refresh",
       "lbfgs: renew the metric after so many iterations, then each time after twice as many; 0: never",
-      "EqmSolverSetFromOptions", set->lbfgs_refresh, &set->lbfgs_refresh, NULL, 0));
+      "EqmSolverSetFromOptions", lb->refresh, &lb->refresh, NULL, 0));
   PetscCall(PetscOptionsBoundedInt("-lbfgs_memory", "lbfgs: how many steps are remembered", "EqmSolverSetFromOptions",
-                                   set->lbfgs_memory, &set->lbfgs_memory, NULL, 1));
+                                   lb->memory, &lb->memory, NULL, 1));
   PetscCall(PetscOptionsEnum("-lbfgs_line_search", "lbfgs: when a step is long enough", "EqmSolverSetFromOptions",
-                             line_searches, set->lbfgs_line_search, &set->lbfgs_line_search, NULL));
+                             line_searches, search, &search, NULL));
+  lb->line_search = (EqmLbfgsLineSearch)search;
   PetscFunctionReturn(0);
 }
 
-const EqmMethod EqmMethodLbfgs = {
-    .name = "lbfgs",
-    .purpose = "limited-memory quasi-Newton steps in the Laplacian metric: scalar factorisations only",
-    .options = Options,
-    .set_up = SetUp,
-    .step = Step,
-    .state = State,
-    .destroy = Destroy,
-};
+PetscErrorCode EqmLbfgsSetMemory(EqmMethod method, PetscInt memory)
+{
+  PetscFunctionBegin;
+  ((Lbfgs *)method->data)->memory = memory;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLbfgsSetLineSearch(EqmMethod method, EqmLbfgsLineSearch search)
+{
+  PetscFunctionBegin;
+  ((Lbfgs *)method->data)->line_search = search;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMethodCreateLbfgs(EqmMethod method)
+{
+  Lbfgs *lb;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&lb));
+  lb->refresh = lb->memory = 10;
+  method->data = lb;
+  method->purpose = "limited-memory quasi-Newton steps in the Laplacian metric: scalar factorisations only";
+  method->ops =
+      (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
+  PetscFunctionReturn(0);
+}

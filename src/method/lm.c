@@ -38,43 +38,43 @@ static void AdaptDamping(EqmLm *lm, PetscReal t)
 
 /* Sphere: the barrier gives way when it is a large part of the objective and not needed to keep steps long, or when it
    is what the residual is in balance with: a minimum of the sum is not yet one of the residual. */
-static void AdaptBarrier(EqmSolver solver, PetscReal t, PetscReal old_squares)
+static void AdaptBarrier(EqmMethod method, PetscReal t, PetscReal old_squares)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
 
   while (t > .2 && lm->kappa * lm->now.barrier > .1 * lm->now.squares &&
          lm->kappa > PETSC_MACHINE_EPSILON * PETSC_MACHINE_EPSILON) {
     lm->kappa *= .3;
   }
   if (lm->now.squares > .97 * old_squares) lm->kappa *= .01;
-  EqmLmWeigh(solver, &lm->now);
+  EqmLmWeigh(method, &lm->now);
 }
 
-static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
   const PetscReal old_squares = lm->now.squares;
   PetscReal t = 0.;
 
   PetscFunctionBegin;
   if (lm->epsilon > 0.) { /* the level follows the total area from one iteration to the next */
-    lm->level = PetscLogReal(solver->totals.total);
-    PetscCall(EqmLmEvaluate(solver, &lm->now));
+    lm->level = PetscLogReal(iterate->totals.total);
+    PetscCall(EqmLmEvaluate(method, &lm->now));
   }
-  PetscCall(EqmLmLinearise(solver));
+  PetscCall(EqmLmLinearise(method, iterate));
   for (PetscInt damping = 0; damping < MOST_DAMPINGS && t == 0.; damping++) {
     PetscBool success;
     PetscReal ratio, predicted;
-    PetscCall(EqmLmFactor(solver, &success));
-    if (success) PetscCall(EqmLmSolveForStep(solver, &success));
+    PetscCall(EqmLmFactor(method, &success));
+    if (success) PetscCall(EqmLmSolveForStep(method, &success));
     if (success) {
-      PetscCall(EqmLmSolveForCurve(solver, &ratio));
-      PetscCall(EqmLmPredictedDecrease(solver, &predicted));
+      PetscCall(EqmLmSolveForCurve(method, &ratio));
+      PetscCall(EqmLmPredictedDecrease(method, &predicted));
       if (lm->epsilon > 0. && predicted <= 1e-12 * lm->now.objective) { /* what is left is rounding */
         *outcome = EQM_STEP_CONVERGED;
         PetscFunctionReturn(0);
       }
-      PetscCall(EqmLmSearch(solver, ratio, predicted, &t));
+      PetscCall(EqmLmSearch(method, ratio, predicted, &t));
     }
     if (t == 0.) lm->mu = PetscMax(10. * lm->mu, 1e-16);
   }
@@ -82,35 +82,49 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   if (t == 0.) PetscFunctionReturn(0);
   AdaptDamping(lm, t);
   EqmLmSwap(&lm->now, &lm->best);
-  PetscCall(EqmLmInnerSteps(solver));
-  if (lm->kappa > 0.) AdaptBarrier(solver, t, old_squares);
-  PetscCall(EqmSolverAccept(solver, &lm->now.place, lm->now.image, lm->now.objective, t));
+  PetscCall(EqmLmInnerSteps(method, iterate));
+  if (lm->kappa > 0.) AdaptBarrier(method, t, old_squares);
+  PetscCall(EqmIterateAccept(method->problem, iterate, &lm->now.place, lm->now.image, lm->now.objective, t));
   *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
 }
 
 /* ---- life */
 
-static PetscErrorCode Options(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
 {
-  PetscInt *const inner = &solver->settings.lm_inner;
+  EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsBoundedInt("-lm_inner",
                                    "lm: at most so many quasi-Newton steps on each factor; with 0 a map takes more "
                                    "factorisations, and hardly magnifies the rounding of the input",
-                                   "EqmSolverSetFromOptions", *inner, inner, NULL, 0));
+                                   "EqmSolverSetFromOptions", lm->most_inner, &lm->most_inner, NULL, 0));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TrialCreate(EqmSolver solver, EqmTrial *trial)
+PetscErrorCode EqmLmSetInnerSteps(EqmMethod method, PetscInt steps)
 {
-  const PetscInt n = solver->mesh->num_local_cells;
+  PetscFunctionBegin;
+  ((EqmLm *)method->data)->most_inner = steps;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLmSetBalance(EqmMethod method, PetscReal epsilon)
+{
+  PetscFunctionBegin;
+  ((EqmLm *)method->data)->epsilon = epsilon;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TrialCreate(EqmMethod method, EqmTrial *trial)
+{
+  const PetscInt n = method->problem->mesh->num_local_cells;
 
   PetscFunctionBegin;
-  PetscCall(EqmPlaceCreate(solver->domain, &trial->place));
+  PetscCall(EqmPlaceCreate(method->problem->domain, &trial->place));
   PetscCall(PetscMalloc2(n, &trial->image, n, &trial->residual));
-  if (solver->domain->curved_image) PetscCall(PetscMalloc2(n, &trial->half_det, n, &trial->lean));
+  if (method->problem->domain->curved_image) PetscCall(PetscMalloc2(n, &trial->half_det, n, &trial->lean));
   PetscFunctionReturn(0);
 }
 
@@ -124,21 +138,22 @@ static PetscErrorCode TrialDestroy(EqmTrial *trial)
 }
 
 /* What is as long as the cells, the vertices or the degrees of freedom are many. */
-static PetscErrorCode MakeRoom(EqmSolver solver)
+static PetscErrorCode MakeRoom(EqmMethod method)
 {
-  EqmLm *const lm = solver->data;
-  const EqmMesh mesh = solver->mesh;
-  const PetscInt dim = solver->domain->dim, num_cells = mesh->num_local_cells;
+  EqmLm *const lm = method->data;
+  const EqmMesh mesh = method->problem->mesh;
+  const PetscInt dim = method->problem->domain->dim, num_cells = mesh->num_local_cells;
 
   PetscFunctionBegin;
-  PetscCall(TrialCreate(solver, &lm->now));
-  PetscCall(TrialCreate(solver, &lm->best));
-  PetscCall(TrialCreate(solver, &lm->attempt));
+  PetscCall(TrialCreate(method, &lm->now));
+  PetscCall(TrialCreate(method, &lm->best));
+  PetscCall(TrialCreate(method, &lm->attempt));
   PetscCall(PetscMalloc3(num_cells, &lm->rate, num_cells, &lm->bend, num_cells, &lm->slope));
   PetscCall(PetscMalloc3(dim * mesh->num_local, &lm->velocity, dim * mesh->num_local, &lm->acceleration,
                          dim * mesh->num_owned, &lm->ambient));
-  if (solver->domain->curved_image) PetscCall(PetscMalloc2(num_cells, &lm->lean_rate, num_cells, &lm->lean_bend));
-  PetscCall(EqmDomainCreateVec(solver->domain, &lm->descent));
+  if (method->problem->domain->curved_image)
+    PetscCall(PetscMalloc2(num_cells, &lm->lean_rate, num_cells, &lm->lean_bend));
+  PetscCall(EqmDomainCreateVec(method->problem->domain, &lm->descent));
   PetscCall(VecDuplicate(lm->descent, &lm->mean));
   PetscCall(VecDuplicate(lm->descent, &lm->step));
   PetscCall(VecDuplicate(lm->descent, &lm->curve));
@@ -151,65 +166,61 @@ static PetscErrorCode MakeRoom(EqmSolver solver)
 }
 
 /* The residual is a logarithm: it needs a map without folds. */
-static PetscErrorCode TakeStart(EqmSolver solver)
+static PetscErrorCode TakeStart(EqmMethod method, EqmIterate iterate)
 {
-  EqmLm *const lm = solver->data;
-  const char *const start = solver->settings.start;
+  EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &lm->now.place));
-  PetscCall(EqmLmEvaluate(solver, &lm->now));
+  PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &lm->now.place));
+  PetscCall(EqmLmEvaluate(method, &lm->now));
   if (!(lm->now.objective < INFINITY)) {
-    EqmFail(solver->comm, EQM_ERR_USAGE,
-            "-method lm needs a start without folds, and -start %s has %" PetscInt64_FMT "; %s", start,
-            solver->totals.folds,
-            strcmp(start, "guarded") ? "take -start guarded"
-                                     : "another -start or -method may still do, or a better mesh");
+    EqmFail(method->comm, EQM_ERR_USAGE,
+            "-method lm needs a start without folds, and this one has %" PetscInt64_FMT
+            "; take -start guarded, or another start or method, or a better mesh",
+            iterate->totals.folds);
   }
-  solver->objective = lm->now.objective;
-  solver->gradient_norm = -1.;
+  iterate->objective = lm->now.objective;
+  iterate->gradient_norm = -1.;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SetUp(EqmSolver solver)
+static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
-  EqmLm *lm;
+  EqmLm *const lm = method->data;
+  const EqmProblem problem = method->problem;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&lm));
-  solver->data = lm;
   lm->mu = 1.;
-  lm->epsilon = PetscMax(solver->settings.balance, 0.);
-  lm->angle_weight = lm->epsilon / solver->domain->target_measure;
-  lm->kappa = solver->domain->curved_image ? 1. : 0.;
-  PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_COUPLED, &lm->linear));
+  lm->angle_weight = lm->epsilon / problem->domain->target_measure;
+  lm->kappa = problem->domain->curved_image ? 1. : 0.;
+  PetscCall(EqmProblemCreateLinear(problem, EQM_MATRIX_COUPLED, &lm->linear));
   PetscCall(EqmLinearSetInexact(lm->linear, inexact));
-  PetscCall(MakeRoom(solver));
+  PetscCall(MakeRoom(method));
   PetscCall(VecSet(lm->mean, 0.)); /* where the residual has no mean it stays so */
   if (lm->epsilon > 0.) {
-    PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &lm->laplacian));
-    PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_COTANGENT, NULL, lm->laplacian));
-    lm->level = PetscLogReal(solver->totals.total);
+    PetscCall(PetscMalloc1(3 * problem->mesh->num_local_cells, &lm->laplacian));
+    PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_COTANGENT, NULL, lm->laplacian));
+    lm->level = PetscLogReal(iterate->totals.total);
   }
-  PetscCall(TakeStart(solver));
+  PetscCall(TakeStart(method, iterate));
   PetscFunctionReturn(0);
 }
 
 /* The factor and the pairs do not outlive an iteration. The objective follows the barrier's weight. */
-static PetscErrorCode State(EqmSolver solver, EqmState state)
+static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmStateReal(state, "damping", &lm->mu));
   PetscCall(EqmStateReal(state, "barrier_weight", &lm->kappa));
-  if (EqmStateIsLoading(state)) EqmLmWeigh(solver, &lm->now);
+  if (EqmStateIsLoading(state)) EqmLmWeigh(method, &lm->now);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(EqmSolver solver)
+static PetscErrorCode Reset(EqmMethod method)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmLinearDestroy(&lm->linear));
@@ -229,17 +240,20 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscCall(VecDestroy(&lm->old_descent));
   PetscCall(VecDestroy(&lm->direction));
   PetscCall(EqmPairsDestroy(&lm->pairs));
-  PetscCall(PetscFree(solver->data));
   PetscFunctionReturn(0);
 }
 
-const EqmMethod EqmMethodLm = {
-    .name = "lm",
-    .purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration: the house's own",
-    .options = Options,
-    .set_up = SetUp,
-    .step = Step,
-    .state = State,
-    .destroy = Destroy,
-    .takes_landmarks = PETSC_TRUE,
-};
+PetscErrorCode EqmMethodCreateLm(EqmMethod method)
+{
+  EqmLm *lm;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&lm));
+  lm->most_inner = 100;
+  method->data = lm;
+  method->purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration";
+  method->takes_landmarks = PETSC_TRUE;
+  method->ops =
+      (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
+  PetscFunctionReturn(0);
+}

@@ -18,6 +18,7 @@ typedef struct {
 } EqmTrial;
 
 typedef struct {
+  PetscInt most_inner; /* quasi-Newton steps on each factor, at most */
   EqmLinear linear;
   PetscReal mu, epsilon, angle_weight; /* angle_weight: eps / T */
   PetscReal kappa;                     /* sphere: weight of the barrier; else 0 */
@@ -45,22 +46,22 @@ static inline void EqmLmResidual(PetscBool balanced, PetscReal l, PetscReal *rho
 /* lm_residual.c */
 PETSC_INTERN PetscErrorCode EqmLmWeightedSum(EqmMesh mesh, const PetscReal *x, PetscInt power, PetscReal *sum);
 PETSC_INTERN PetscErrorCode EqmLmRemoveMean(EqmMesh mesh, PetscReal *x);
-PETSC_INTERN PetscErrorCode EqmLmAngleEnergy(EqmSolver solver, const PetscReal *x, PetscReal *energy);
-PETSC_INTERN void EqmLmWeigh(EqmSolver solver, EqmTrial *trial);
-PETSC_INTERN PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial);
+PETSC_INTERN PetscErrorCode EqmLmAngleEnergy(EqmMethod method, const PetscReal *x, PetscReal *energy);
+PETSC_INTERN void EqmLmWeigh(EqmMethod method, EqmTrial *trial);
+PETSC_INTERN PetscErrorCode EqmLmEvaluate(EqmMethod method, EqmTrial *trial);
 /* lm_model.c */
-PETSC_INTERN PetscErrorCode EqmLmGradient(EqmSolver solver);
-PETSC_INTERN PetscErrorCode EqmLmLinearise(EqmSolver solver);
-PETSC_INTERN PetscErrorCode EqmLmFactor(EqmSolver solver, PetscBool *success);
-PETSC_INTERN PetscErrorCode EqmLmSolveForStep(EqmSolver solver, PetscBool *success);
-PETSC_INTERN PetscErrorCode EqmLmSolveForCurve(EqmSolver solver, PetscReal *ratio);
-PETSC_INTERN PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease);
-PETSC_INTERN PetscErrorCode EqmLmApplyInverse(void *solver, Vec q);
+PETSC_INTERN PetscErrorCode EqmLmGradient(EqmMethod method, EqmIterate iterate);
+PETSC_INTERN PetscErrorCode EqmLmLinearise(EqmMethod method, EqmIterate iterate);
+PETSC_INTERN PetscErrorCode EqmLmFactor(EqmMethod method, PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmLmSolveForStep(EqmMethod method, PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio);
+PETSC_INTERN PetscErrorCode EqmLmPredictedDecrease(EqmMethod method, PetscReal *decrease);
+PETSC_INTERN PetscErrorCode EqmLmApplyInverse(void *method, Vec q);
 /* lm_fields.c */
-PETSC_INTERN PetscErrorCode EqmLmSetFields(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmLmSetFields(EqmMethod method);
 /* lm_search.c */
-PETSC_INTERN PetscErrorCode EqmLmSearch(EqmSolver solver, PetscReal ratio, PetscReal predicted, PetscReal *best_t);
-PETSC_INTERN PetscErrorCode EqmLmInnerSteps(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmLmSearch(EqmMethod method, PetscReal ratio, PetscReal predicted, PetscReal *best_t);
+PETSC_INTERN PetscErrorCode EqmLmInnerSteps(EqmMethod method, EqmIterate iterate);
 PETSC_INTERN void EqmLmSwap(EqmTrial *a, EqmTrial *b);
 
 #endif

@@ -29,13 +29,13 @@ static void SphereField(PetscInt which, const PetscReal *x, PetscReal *field)
 }
 
 /* Tell the linear solver, if it wants to know. Collective. */
-PetscErrorCode EqmLmSetFields(EqmSolver solver)
+PetscErrorCode EqmLmSetFields(EqmMethod method)
 {
-  EqmLm *const lm = solver->data;
-  const PetscBool sphere = solver->domain->curved_image;
+  EqmLm *const lm = method->data;
+  const PetscBool sphere = method->problem->domain->curved_image;
 
   PetscFunctionBegin;
-  PetscCall(EqmSolverSetFields(solver, &lm->now.place, lm->linear, sphere ? SPHERE_FIELDS : PLANAR_FIELDS,
-                               sphere ? SphereField : PlanarField));
+  PetscCall(EqmProblemSetFields(method->problem, &lm->now.place, lm->linear, sphere ? SPHERE_FIELDS : PLANAR_FIELDS,
+                                sphere ? SphereField : PlanarField));
   PetscFunctionReturn(0);
 }

@@ -1,14 +1,15 @@
 /* The Gauss-Newton model at the present map: matrix, right-hand sides, step and bend. */
 #include "method/lm.h"
+#include "energy/cellframe.h"
 #include "geometry/simplex.h"
 
 /* d rho and (sphere, else zero) d q by each degree of freedom of a cell. */
-static inline void CellGradients(EqmSolver solver, PetscInt cell, const EqmCellFrame *frame, PetscReal of_rho[6],
+static inline void CellGradients(EqmMethod method, PetscInt cell, const EqmCellFrame *frame, PetscReal of_rho[6],
                                  PetscReal of_lean[6])
 {
-  const EqmLm *const lm = solver->data;
-  const EqmDomain domain = solver->domain;
-  const PetscInt *const v = solver->mesh->cells + 3 * cell, dim = domain->dim;
+  const EqmLm *const lm = method->data;
+  const EqmDomain domain = method->problem->domain;
+  const PetscInt *const v = method->problem->mesh->cells + 3 * cell, dim = domain->dim;
   const PetscReal *const x = lm->now.place.x, *const p[] = {x + dim * v[0], x + dim * v[1], x + dim * v[2]};
   PetscReal area[3 * EQM_MAX_CORNERS], det[3 * EQM_MAX_CORNERS];
 
@@ -30,19 +31,19 @@ static inline void CellGradients(EqmSolver solver, PetscInt cell, const EqmCellF
 /* Gauss-Newton, metric and angle energy of one cell, in the degrees of freedom of its vertices. */
 static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 {
-  const EqmSolver solver = context;
-  const EqmLm *const lm = solver->data;
-  const EqmMesh mesh = solver->mesh;
+  const EqmMethod method = context;
+  const EqmLm *const lm = method->data;
+  const EqmMesh mesh = method->problem->mesh;
   const PetscInt *const v = mesh->cells + 3 * cell;
   const PetscReal floor = .3 * PetscSqrtReal(lm->now.squares);
   const PetscReal elastic = .5 * PetscSqrtReal(3.) * lm->mu * (PetscAbsReal(lm->now.residual[cell]) + floor);
   const PetscReal angle = .5 * lm->angle_weight, weight = mesh->weight[cell];
-  const PetscBool drawn = (PetscBool)(solver->landmarks.num > 0);
+  const PetscBool drawn = (PetscBool)(method->problem->landmarks.num > 0);
   PetscReal of_rho[6], of_lean[6];
   EqmCellFrame frame;
 
-  EqmCellFrameFind(solver->domain, &lm->now.place, cell, &frame);
-  CellGradients(solver, cell, &frame, of_rho, of_lean);
+  EqmCellFrameFind(method->problem->domain, &lm->now.place, cell, &frame);
+  CellGradients(method, cell, &frame, of_rho, of_lean);
   for (PetscInt i = 0; i < frame.count; i++) {
     for (PetscInt j = 0; j < frame.count; j++) {
       const PetscReal *const u = frame.direction[i], *const e = frame.direction[j], dot = EqmDot3(u, e);
@@ -55,7 +56,7 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
         entry += angle * dot * (a == b ? w[(a + 1) % 3] + w[(a + 2) % 3] : -w[3 - a - b]);
         if (a != b) entry -= angle * cross * (b == (a + 1) % 3 ? .5 : -.5);
       }
-      if (drawn && a == b) entry += solver->landmarks.share[v[a]] * dot;
+      if (drawn && a == b) entry += method->problem->landmarks.share[v[a]] * dot;
       matrix[frame.count * i + j] = entry;
     }
   }
@@ -63,12 +64,12 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 
 /* sum over cells of w (value d rho + kappa lean_value d q), and half the gradient of the other terms (angle energy,
    landmarks), in degrees of freedom. NULL for `value`: ones; for `lean_value`: nothing. */
-static PetscErrorCode PullBack(EqmSolver solver, const PetscReal *value, const PetscReal *lean_value,
+static PetscErrorCode PullBack(EqmMethod method, const PetscReal *value, const PetscReal *lean_value,
                                PetscBool with_others, Vec result)
 {
-  EqmLm *const lm = solver->data;
-  const EqmMesh mesh = solver->mesh;
-  const PetscInt n = solver->domain->dim * mesh->num_owned;
+  EqmLm *const lm = method->data;
+  const EqmMesh mesh = method->problem->mesh;
+  const PetscInt n = method->problem->domain->dim * mesh->num_owned;
   const PetscReal angle = with_others ? .5 * lm->angle_weight : 0.;
   PetscReal *scaled, *pull;
 
@@ -79,12 +80,12 @@ static PetscErrorCode PullBack(EqmSolver solver, const PetscReal *value, const P
     const PetscReal lean = lean_value ? lm->kappa * lean_value[c] / lm->now.image[c] : 0.;
     scaled[c] = mesh->weight[c] * (lm->slope[c] * (value ? value[c] : 1.) - lean) - angle;
   }
-  PetscCall(EqmImageGradient(solver->domain, &lm->now.place, scaled, lm->ambient));
+  PetscCall(EqmImageGradient(method->problem->domain, &lm->now.place, scaled, lm->ambient));
   if (lean_value) {
 #pragma omp parallel for schedule(static)
     for (PetscInt c = 0; c < mesh->num_local_cells; c++)
       scaled[c] = mesh->weight[c] * lm->kappa * lean_value[c] / lm->now.half_det[c];
-    PetscCall(EqmImageGradientOf(solver->domain, EQM_MEASURE_HALF_DET, &lm->now.place, scaled, pull));
+    PetscCall(EqmImageGradientOf(method->problem->domain, EQM_MEASURE_HALF_DET, &lm->now.place, scaled, pull));
     for (PetscInt k = 0; k < n; k++) lm->ambient[k] += pull[k];
   }
   if (angle > 0.) {
@@ -92,9 +93,10 @@ static PetscErrorCode PullBack(EqmSolver solver, const PetscReal *value, const P
     for (PetscInt k = 0; k < n; k++) lm->ambient[k] += angle * pull[k];
   }
   if (with_others)
-    EqmLandmarksAddGradient(&solver->landmarks, solver->domain, lm->now.place.x, solver->landmarks.weight, lm->ambient);
+    EqmLandmarksAddGradient(&method->problem->landmarks, method->problem->domain, lm->now.place.x,
+                            method->problem->landmarks.weight, lm->ambient);
   PetscCall(PetscFree2(scaled, pull));
-  PetscCall(EqmDomainProject(solver->domain, &lm->now.place, lm->ambient, result));
+  PetscCall(EqmDomainProject(method->problem->domain, &lm->now.place, lm->ambient, result));
   PetscFunctionReturn(0);
 }
 
@@ -125,10 +127,10 @@ static PetscErrorCode Norm(EqmMesh mesh, PetscInt n, const PetscReal *x, PetscRe
 
 /* d and y from the present factor; `success` is false if an iteration finds the matrix not to be definite. Collective.
  */
-PetscErrorCode EqmLmSolveForStep(EqmSolver solver, PetscBool *success)
+PetscErrorCode EqmLmSolveForStep(EqmMethod method, PetscBool *success)
 {
-  EqmLm *const lm = solver->data;
-  const PetscInt n = solver->domain->num_dofs, num_rhs = lm->epsilon > 0. ? 1 : 2;
+  EqmLm *const lm = method->data;
+  const PetscInt n = method->problem->domain->num_dofs, num_rhs = lm->epsilon > 0. ? 1 : 2;
   const PetscScalar *b, *g;
   PetscScalar *d, *y;
   PetscReal *columns;
@@ -155,19 +157,20 @@ PetscErrorCode EqmLmSolveForStep(EqmSolver solver, PetscBool *success)
 
 /* Geodesic acceleration: d2 = -1/2 H^-1 J^T W rho'' along the geodesic of velocity d; `ratio` = |d2| / |d| as
  * displacements. */
-PetscErrorCode EqmLmSolveForCurve(EqmSolver solver, PetscReal *ratio)
+PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio)
 {
-  EqmLm *const lm = solver->data;
-  const EqmMesh mesh = solver->mesh;
+  EqmLm *const lm = method->data;
+  const EqmMesh mesh = method->problem->mesh;
   PetscReal step_norm, curve_norm;
   PetscScalar *array;
 
   PetscFunctionBegin;
-  PetscCall(EqmDomainExpand(solver->domain, &lm->now.place, lm->step, lm->velocity));
-  PetscCall(EqmDomainCurvature(solver->domain, &lm->now.place, lm->velocity, lm->acceleration));
-  PetscCall(EqmImageDerivatives(solver->domain, &lm->now.place, lm->velocity, lm->acceleration, lm->rate, lm->bend));
+  PetscCall(EqmDomainExpand(method->problem->domain, &lm->now.place, lm->step, lm->velocity));
+  PetscCall(EqmDomainCurvature(method->problem->domain, &lm->now.place, lm->velocity, lm->acceleration));
+  PetscCall(
+      EqmImageDerivatives(method->problem->domain, &lm->now.place, lm->velocity, lm->acceleration, lm->rate, lm->bend));
   if (lm->kappa > 0.) {
-    PetscCall(EqmImageDerivativesOf(solver->domain, EQM_MEASURE_HALF_DET, &lm->now.place, lm->velocity,
+    PetscCall(EqmImageDerivativesOf(method->problem->domain, EQM_MEASURE_HALF_DET, &lm->now.place, lm->velocity,
                                     lm->acceleration, lm->lean_rate, lm->lean_bend));
   }
 #pragma omp parallel for schedule(static)
@@ -186,24 +189,24 @@ PetscErrorCode EqmLmSolveForCurve(EqmSolver solver, PetscReal *ratio)
     lm->bend[c] = first * log_bend + second * log_rate * log_rate;
   }
   if (!(lm->epsilon > 0.)) PetscCall(EqmLmRemoveMean(mesh, lm->bend));
-  PetscCall(PullBack(solver, lm->bend, lm->kappa > 0. ? lm->lean_bend : NULL, PETSC_FALSE, lm->curve));
+  PetscCall(PullBack(method, lm->bend, lm->kappa > 0. ? lm->lean_bend : NULL, PETSC_FALSE, lm->curve));
   PetscCall(VecGetArray(lm->curve, &array));
   PetscCall(EqmLinearSolve(lm->linear, 1, array, array));
   PetscCall(VecRestoreArray(lm->curve, &array));
   PetscCall(AddMeanTerm(lm, lm->curve));
   PetscCall(VecScale(lm->curve, -.5));
-  PetscCall(EqmDomainExpand(solver->domain, &lm->now.place, lm->curve, lm->acceleration));
-  PetscCall(Norm(mesh, solver->domain->dim * mesh->num_owned, lm->velocity, &step_norm));
-  PetscCall(Norm(mesh, solver->domain->dim * mesh->num_owned, lm->acceleration, &curve_norm));
+  PetscCall(EqmDomainExpand(method->problem->domain, &lm->now.place, lm->curve, lm->acceleration));
+  PetscCall(Norm(mesh, method->problem->domain->dim * mesh->num_owned, lm->velocity, &step_norm));
+  PetscCall(Norm(mesh, method->problem->domain->dim * mesh->num_owned, lm->acceleration, &curve_norm));
   *ratio = step_norm > 0. ? curve_norm / step_norm : 0.;
   PetscFunctionReturn(0);
 }
 
 /* What the linear model promises for the full step. Leaves rate and bend used up. */
-PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease)
+PetscErrorCode EqmLmPredictedDecrease(EqmMethod method, PetscReal *decrease)
 {
-  EqmLm *const lm = solver->data;
-  const EqmMesh mesh = solver->mesh;
+  EqmLm *const lm = method->data;
+  const EqmMesh mesh = method->problem->mesh;
   PetscReal squares;
 
   PetscFunctionBegin;
@@ -216,17 +219,18 @@ PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease)
     PetscCall(EqmLmWeightedSum(mesh, lm->lean_rate, 2, &squares));
     *decrease += lm->kappa * (lm->now.barrier - squares);
   }
-  if (solver->landmarks.num_total > 0) {
-    PetscCall(EqmLandmarksSquares(&solver->landmarks, solver->domain, lm->now.place.x, lm->velocity, &squares));
-    *decrease += solver->landmarks.weight * (lm->now.pull - squares);
+  if (method->problem->landmarks.num_total > 0) {
+    PetscCall(EqmLandmarksSquares(&method->problem->landmarks, method->problem->domain, lm->now.place.x, lm->velocity,
+                                  &squares));
+    *decrease += method->problem->landmarks.weight * (lm->now.pull - squares);
   }
   if (lm->epsilon > 0.) {
     PetscReal quadratic, linear, local = 0.;
     PetscReal *pull, *gradient;
-    PetscCall(EqmLmAngleEnergy(solver, lm->velocity, &quadratic));
+    PetscCall(EqmLmAngleEnergy(method, lm->velocity, &quadratic));
     PetscCall(PetscMalloc2(2 * mesh->num_owned, &pull, 2 * mesh->num_owned, &gradient));
     for (PetscInt c = 0; c < mesh->num_local_cells; c++) lm->bend[c] = 1.;
-    PetscCall(EqmImageGradient(solver->domain, &lm->now.place, lm->bend, gradient));
+    PetscCall(EqmImageGradient(method->problem->domain, &lm->now.place, lm->bend, gradient));
     PetscCall(EqmLaplacianApply(mesh, lm->laplacian, 2, lm->now.place.x, pull));
     for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) local += (pull[k] - gradient[k]) * lm->velocity[k];
     PetscCall(PetscFree2(pull, gradient));
@@ -237,10 +241,10 @@ PetscErrorCode EqmLmPredictedDecrease(EqmSolver solver, PetscReal *decrease)
 }
 
 /* Slopes d rho / d a and minus half the gradient of the objective at the present map. Collective. */
-PetscErrorCode EqmLmGradient(EqmSolver solver)
+PetscErrorCode EqmLmGradient(EqmMethod method, EqmIterate iterate)
 {
-  EqmLm *const lm = solver->data;
-  const EqmMesh mesh = solver->mesh;
+  EqmLm *const lm = method->data;
+  const EqmMesh mesh = method->problem->mesh;
   PetscReal norm;
 
   PetscFunctionBegin;
@@ -253,41 +257,41 @@ PetscErrorCode EqmLmGradient(EqmSolver solver)
     }
     lm->slope[c] = first / lm->now.image[c];
   }
-  PetscCall(PullBack(solver, lm->now.residual, lm->kappa > 0. ? lm->now.lean : NULL, PETSC_TRUE, lm->descent));
+  PetscCall(PullBack(method, lm->now.residual, lm->kappa > 0. ? lm->now.lean : NULL, PETSC_TRUE, lm->descent));
   PetscCall(VecScale(lm->descent, -1.));
   PetscCall(VecNorm(lm->descent, NORM_2, &norm));
-  solver->gradient_norm = 2. * norm;
+  iterate->gradient_norm = 2. * norm;
   PetscFunctionReturn(0);
 }
 
 /* Gradient and the mean's vector at the present map. Collective. */
-PetscErrorCode EqmLmLinearise(EqmSolver solver)
+PetscErrorCode EqmLmLinearise(EqmMethod method, EqmIterate iterate)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmLmGradient(solver));
-  if (!(lm->epsilon > 0.)) PetscCall(PullBack(solver, NULL, NULL, PETSC_FALSE, lm->mean));
+  PetscCall(EqmLmGradient(method, iterate));
+  if (!(lm->epsilon > 0.)) PetscCall(PullBack(method, NULL, NULL, PETSC_FALSE, lm->mean));
   PetscFunctionReturn(0);
 }
 
 /* Factor the matrix at the present map with the present damping. Collective. */
-PetscErrorCode EqmLmFactor(EqmSolver solver, PetscBool *success)
+PetscErrorCode EqmLmFactor(EqmMethod method, PetscBool *success)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmLmSetFields(solver));
-  PetscCall(EqmLinearFactor(lm->linear, CellMatrix, solver, 1. + (lm->epsilon > 0. ? 1e-11 : 1e-12), success));
+  PetscCall(EqmLmSetFields(method));
+  PetscCall(EqmLinearFactor(lm->linear, CellMatrix, method, 1. + (lm->epsilon > 0. ? 1e-11 : 1e-12), success));
   PetscFunctionReturn(0);
 }
 
-/* q <- H^-1 q with the present factor, the mean's term included; `context` is the solver. lm->mean must be the factor's
+/* q <- H^-1 q with the present factor, the mean's term included; `context` is the method. lm->mean must be the factor's
    Collective. */
 PetscErrorCode EqmLmApplyInverse(void *context, Vec q)
 {
-  const EqmSolver solver = context;
-  EqmLm *const lm = solver->data;
+  const EqmMethod method = context;
+  EqmLm *const lm = method->data;
   PetscScalar *array;
 
   PetscFunctionBegin;

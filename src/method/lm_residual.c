@@ -46,16 +46,16 @@ static PetscErrorCode AllPositive(EqmMesh mesh, const PetscReal *x, PetscBool *p
 }
 
 /* (E_D - A): the angle energy of places or, being quadratic in them, of displacements. */
-PetscErrorCode EqmLmAngleEnergy(EqmSolver solver, const PetscReal *x, PetscReal *energy)
+PetscErrorCode EqmLmAngleEnergy(EqmMethod method, const PetscReal *x, PetscReal *energy)
 {
-  EqmLm *const lm = solver->data;
-  const EqmMesh mesh = solver->mesh;
+  EqmLm *const lm = method->data;
+  const EqmMesh mesh = method->problem->mesh;
   EqmPlace place = {.x = (PetscReal *)x};
   PetscReal dirichlet, area, local = 0.;
 
   PetscFunctionBegin;
   PetscCall(EqmLaplacianEnergy(mesh, lm->laplacian, 2, x, &dirichlet));
-  PetscCall(EqmImageMeasure(solver->domain, &place, lm->bend));
+  PetscCall(EqmImageMeasure(method->problem->domain, &place, lm->bend));
   for (PetscInt c = 0; c < mesh->num_owned_cells; c++) local += lm->bend[c];
   PetscCall(MPIU_Allreduce(&local, &area, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
   *energy = dirichlet - area;
@@ -63,12 +63,12 @@ PetscErrorCode EqmLmAngleEnergy(EqmSolver solver, const PetscReal *x, PetscReal 
 }
 
 /* Sphere: q = log(half det / a) keeps triangles from leaning over; `positive` false if one has. Collective. */
-static PetscErrorCode EvaluateBarrier(EqmSolver solver, EqmTrial *trial, PetscBool *positive)
+static PetscErrorCode EvaluateBarrier(EqmMethod method, EqmTrial *trial, PetscBool *positive)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = method->problem->mesh;
 
   PetscFunctionBegin;
-  PetscCall(EqmImageMeasureOf(solver->domain, EQM_MEASURE_HALF_DET, &trial->place, trial->half_det));
+  PetscCall(EqmImageMeasureOf(method->problem->domain, EQM_MEASURE_HALF_DET, &trial->place, trial->half_det));
   PetscCall(AllPositive(mesh, trial->half_det, positive));
   if (!*positive) PetscFunctionReturn(0);
 #pragma omp parallel for schedule(static)
@@ -79,19 +79,19 @@ static PetscErrorCode EvaluateBarrier(EqmSolver solver, EqmTrial *trial, PetscBo
 }
 
 /* What the trial is worth with the present weights. Not collective. */
-void EqmLmWeigh(EqmSolver solver, EqmTrial *trial)
+void EqmLmWeigh(EqmMethod method, EqmTrial *trial)
 {
-  const EqmLm *const lm = solver->data;
+  const EqmLm *const lm = method->data;
 
   trial->objective = trial->squares + lm->kappa * trial->barrier + lm->angle_weight * trial->angle +
-                     solver->landmarks.weight * trial->pull;
+                     method->problem->landmarks.weight * trial->pull;
 }
 
 /* Look at trial->place. Counts one evaluation. Collective. */
-PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial)
+PetscErrorCode EqmLmEvaluate(EqmMethod method, EqmTrial *trial)
 {
-  EqmLm *const lm = solver->data;
-  const EqmMesh mesh = solver->mesh;
+  EqmLm *const lm = method->data;
+  const EqmMesh mesh = method->problem->mesh;
   const PetscBool balanced = (PetscBool)(lm->epsilon > 0.);
   PetscBool fine;
   EqmWork *work;
@@ -100,10 +100,10 @@ PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial)
   PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
   work->evaluations++;
   trial->objective = INFINITY; /* PETSC_INFINITY is a finite number */
-  PetscCall(EqmImageMeasure(solver->domain, &trial->place, trial->image));
+  PetscCall(EqmImageMeasure(method->problem->domain, &trial->place, trial->image));
   PetscCall(AllPositive(mesh, trial->image, &fine));
-  if (fine && solver->domain->curved_image) PetscCall(EvaluateBarrier(solver, trial, &fine));
-  if (fine) PetscCall(EqmDomainBoundaryInOrder(solver->domain, &trial->place, &fine));
+  if (fine && method->problem->domain->curved_image) PetscCall(EvaluateBarrier(method, trial, &fine));
+  if (fine) PetscCall(EqmDomainBoundaryInOrder(method->problem->domain, &trial->place, &fine));
   if (!fine) PetscFunctionReturn(0);
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_KERNEL));
 #pragma omp parallel for schedule(static)
@@ -115,9 +115,10 @@ PetscErrorCode EqmLmEvaluate(EqmSolver solver, EqmTrial *trial)
   if (!balanced) PetscCall(EqmLmRemoveMean(mesh, trial->residual));
   PetscCall(EqmLmWeightedSum(mesh, trial->residual, 2, &trial->squares));
   PetscCall(EqmEventEnd(mesh->ledger, EQM_EVENT_KERNEL));
-  if (balanced) PetscCall(EqmLmAngleEnergy(solver, trial->place.x, &trial->angle));
-  if (solver->landmarks.num_total > 0)
-    PetscCall(EqmLandmarksSquares(&solver->landmarks, solver->domain, trial->place.x, NULL, &trial->pull));
-  EqmLmWeigh(solver, trial);
+  if (balanced) PetscCall(EqmLmAngleEnergy(method, trial->place.x, &trial->angle));
+  if (method->problem->landmarks.num_total > 0)
+    PetscCall(
+        EqmLandmarksSquares(&method->problem->landmarks, method->problem->domain, trial->place.x, NULL, &trial->pull));
+  EqmLmWeigh(method, trial);
   PetscFunctionReturn(0);
 }

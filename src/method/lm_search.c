@@ -14,16 +14,16 @@ void EqmLmSwap(EqmTrial *a, EqmTrial *b)
 }
 
 /* Look at the map at parameter t, with or without the bend; keep it if it is the best so far. */
-static PetscErrorCode TryAt(EqmSolver solver, PetscReal t, PetscBool bent, PetscReal *best_t, PetscReal *objective)
+static PetscErrorCode TryAt(EqmMethod method, PetscReal t, PetscBool bent, PetscReal *best_t, PetscReal *objective)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
   PetscCall(VecCopy(lm->step, lm->move));
   PetscCall(VecScale(lm->move, t));
   if (bent) PetscCall(VecAXPY(lm->move, t * t, lm->curve));
-  PetscCall(EqmDomainMove(solver->domain, &lm->now.place, 1., lm->move, &lm->attempt.place));
-  PetscCall(EqmLmEvaluate(solver, &lm->attempt));
+  PetscCall(EqmDomainMove(method->problem->domain, &lm->now.place, 1., lm->move, &lm->attempt.place));
+  PetscCall(EqmLmEvaluate(method, &lm->attempt));
   *objective = lm->attempt.objective;
   if (lm->attempt.objective < (*best_t > 0. ? lm->best.objective : lm->now.objective)) {
     *best_t = t;
@@ -34,17 +34,17 @@ static PetscErrorCode TryAt(EqmSolver solver, PetscReal t, PetscBool bent, Petsc
 
 /* Halve t until a trial is worse than the best or the decrease is a fair share of the prediction; `best_t` 0 if nothing
    decreases the objective. */
-PetscErrorCode EqmLmSearch(EqmSolver solver, PetscReal ratio, PetscReal predicted, PetscReal *best_t)
+PetscErrorCode EqmLmSearch(EqmMethod method, PetscReal ratio, PetscReal predicted, PetscReal *best_t)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
   const PetscReal share = lm->epsilon > 0. ? .1 : .3;
   PetscReal t = ratio < 1. ? 1. : 1. / ratio, objective;
 
   PetscFunctionBegin;
   *best_t = 0.;
   for (PetscInt halving = 0; halving < MOST_HALVINGS; halving++, t *= .5) {
-    PetscCall(TryAt(solver, t, PETSC_TRUE, best_t, &objective));
-    if (ratio >= 1. || halving >= 2 || lm->epsilon > 0.) PetscCall(TryAt(solver, t, PETSC_FALSE, best_t, &objective));
+    PetscCall(TryAt(method, t, PETSC_TRUE, best_t, &objective));
+    if (ratio >= 1. || halving >= 2 || lm->epsilon > 0.) PetscCall(TryAt(method, t, PETSC_FALSE, best_t, &objective));
     if (*best_t > 0. &&
         (objective > lm->best.objective || lm->best.objective < lm->now.objective - share * t * predicted))
       break;
@@ -53,14 +53,14 @@ PetscErrorCode EqmLmSearch(EqmSolver solver, PetscReal ratio, PetscReal predicte
 }
 
 /* Armijo search along lm->direction from t on, leaving the map in lm->attempt; `t` is 0 if nothing decreases enough. */
-static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t)
+static PetscErrorCode Backtrack(EqmMethod method, PetscReal slope, PetscReal *t)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
   for (PetscInt trial = 0; trial < MOST_HALVINGS; trial++) {
-    PetscCall(EqmDomainMove(solver->domain, &lm->now.place, *t, lm->direction, &lm->attempt.place));
-    PetscCall(EqmLmEvaluate(solver, &lm->attempt));
+    PetscCall(EqmDomainMove(method->problem->domain, &lm->now.place, *t, lm->direction, &lm->attempt.place));
+    PetscCall(EqmLmEvaluate(method, &lm->attempt));
     const PetscReal change = lm->attempt.objective - lm->now.objective;
     if (change < 1e-4 * *t * slope) PetscFunctionReturn(0);
     if (!(change < INFINITY))
@@ -84,10 +84,10 @@ static PetscBool IsUsedUp(PetscInt steps, const PetscReal *objective, PetscReal 
 
 /* Quasi-Newton steps (L-BFGS) with the present factor as the initial inverse Hessian: a solve is some twenty times
    cheaper than a factorisation. The frames of the domain carry gradients from one map to the next. Collective. */
-PetscErrorCode EqmLmInnerSteps(EqmSolver solver)
+PetscErrorCode EqmLmInnerSteps(EqmMethod method, EqmIterate iterate)
 {
-  EqmLm *const lm = solver->data;
-  const PetscInt most = solver->settings.lm_inner;
+  EqmLm *const lm = method->data;
+  const PetscInt most = lm->most_inner;
   PetscReal *objective, t = .25, slope;
 
   PetscFunctionBegin;
@@ -95,17 +95,17 @@ PetscErrorCode EqmLmInnerSteps(EqmSolver solver)
   PetscCall(PetscMalloc1(most + 1, &objective));
   objective[0] = lm->now.objective;
   PetscCall(EqmPairsForget(lm->pairs));
-  PetscCall(EqmLmGradient(solver)); /* lm->mean stays the factor's */
-  for (PetscInt k = 0; k < most && (k == 0 || !IsUsedUp(k, objective, solver->objective)); k++) {
+  PetscCall(EqmLmGradient(method, iterate)); /* lm->mean stays the factor's */
+  for (PetscInt k = 0; k < most && (k == 0 || !IsUsedUp(k, objective, iterate->objective)); k++) {
     PetscCall(VecCopy(lm->descent, lm->direction));
-    PetscCall(EqmPairsDirection(lm->pairs, EqmLmApplyInverse, solver, lm->direction));
+    PetscCall(EqmPairsDirection(lm->pairs, EqmLmApplyInverse, method, lm->direction));
     PetscCall(VecDot(lm->descent, lm->direction, &slope));
     t = PetscMin(1., 4. * t);
-    if (slope > 0.) PetscCall(Backtrack(solver, -2. * slope, &t));
+    if (slope > 0.) PetscCall(Backtrack(method, -2. * slope, &t));
     if (!(slope > 0.) || t == 0.) break;
     EqmLmSwap(&lm->now, &lm->attempt);
     PetscCall(VecCopy(lm->descent, lm->old_descent));
-    PetscCall(EqmLmGradient(solver));
+    PetscCall(EqmLmGradient(method, iterate));
     PetscCall(
         EqmPairsAdd(lm->pairs, t, lm->direction, lm->descent, lm->old_descent)); /* descent is minus the gradient */
     objective[k + 1] = lm->now.objective;

@@ -17,17 +17,15 @@ typedef struct {
   Vec gradient, trial_gradient, step;
 } Newton;
 
-static PetscErrorCode SetUp(EqmSolver solver)
+static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
-  const EqmMesh mesh = solver->mesh;
-  const EqmDomain domain = solver->domain;
-  Newton *newton;
+  const EqmMesh mesh = method->problem->mesh;
+  const EqmDomain domain = method->problem->domain;
+  Newton *const newton = method->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&newton));
-  solver->data = newton;
   newton->mu = 1e-2;
-  PetscCall(EqmSolverCreateLinear(solver, EQM_MATRIX_COUPLED, &newton->linear));
+  PetscCall(EqmProblemCreateLinear(method->problem, EQM_MATRIX_COUPLED, &newton->linear));
   PetscCall(PetscMalloc4(mesh->num_local_cells, &newton->slope,
                          EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &newton->weights,
                          mesh->num_local_cells, &newton->image, domain->dim * mesh->num_local, &newton->velocity));
@@ -35,14 +33,14 @@ static PetscErrorCode SetUp(EqmSolver solver)
   PetscCall(EqmDomainCreateVec(domain, &newton->gradient));
   PetscCall(VecDuplicate(newton->gradient, &newton->trial_gradient));
   PetscCall(VecDuplicate(newton->gradient, &newton->step));
-  PetscCall(EqmAuthalicEnergy(domain, &solver->place, solver->image, &solver->objective, newton->gradient));
-  PetscCall(VecNorm(newton->gradient, NORM_2, &solver->gradient_norm));
+  PetscCall(EqmAuthalicEnergy(domain, &iterate->place, iterate->image, &iterate->objective, newton->gradient));
+  PetscCall(VecNorm(newton->gradient, NORM_2, &iterate->gradient_norm));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(EqmSolver solver)
+static PetscErrorCode Reset(EqmMethod method)
 {
-  Newton *const newton = solver->data;
+  Newton *const newton = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmLinearDestroy(&newton->linear));
@@ -51,20 +49,20 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscCall(VecDestroy(&newton->gradient));
   PetscCall(VecDestroy(&newton->trial_gradient));
   PetscCall(VecDestroy(&newton->step));
-  PetscCall(PetscFree(solver->data));
   PetscFunctionReturn(0);
 }
 
 static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 {
-  const EqmSolver solver = context;
-  const EqmMesh mesh = solver->mesh;
-  const Newton *const newton = solver->data;
-  const PetscReal scale = 2. / (mesh->weight[cell] * solver->totals.total);
+  const EqmMethod method = context;
+  const EqmIterate iterate = method->iterate;
+  const EqmMesh mesh = method->problem->mesh;
+  const Newton *const newton = method->data;
+  const PetscReal scale = 2. / (mesh->weight[cell] * iterate->totals.total);
   PetscReal laplacian[4][4];
   EqmCellDerivatives d;
 
-  EqmCellDifferentiate(solver->domain, &solver->place, cell, &d);
+  EqmCellDifferentiate(method->problem->domain, &iterate->place, cell, &d);
   EqmCellLaplacian(mesh->cell_size, newton->weights + EqmCellNumEdges(mesh->cell_size) * cell, laplacian);
   for (PetscInt a = 0; a < mesh->cell_size; a++) laplacian[a][a] *= 1. + diagonal_share;
   for (PetscInt i = 0; i < d.frame.count; i++) {
@@ -75,25 +73,25 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 }
 
 /* Slopes and metric at the present map. */
-static PetscErrorCode Linearise(EqmSolver solver)
+static PetscErrorCode Linearise(EqmMethod method, EqmIterate iterate)
 {
-  Newton *const newton = solver->data;
-  const EqmImageTotals *const totals = &solver->totals;
+  Newton *const newton = method->data;
+  const EqmImageTotals *const totals = &iterate->totals;
 
   PetscFunctionBegin;
-  for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) {
-    newton->slope[c] =
-        2. * (solver->image[c] / (solver->mesh->weight[c] * totals->total) - 1.) - totals->energy / totals->total;
+  for (PetscInt c = 0; c < method->problem->mesh->num_local_cells; c++) {
+    newton->slope[c] = 2. * (iterate->image[c] / (method->problem->mesh->weight[c] * totals->total) - 1.) -
+                       totals->energy / totals->total;
   }
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, newton->weights));
+  PetscCall(EqmLaplacianWeights(method->problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, newton->weights));
   PetscFunctionReturn(0);
 }
 
 /* (H + mu M) p = -g; what the quadratic model without the damping promises. An iteration finds only here that a matrix
    is not definite. */
-static PetscErrorCode SolveStep(EqmSolver solver, PetscReal *promised, PetscBool *success)
+static PetscErrorCode SolveStep(EqmMethod method, EqmIterate iterate, PetscReal *promised, PetscBool *success)
 {
-  Newton *const newton = solver->data;
+  Newton *const newton = method->data;
   PetscReal slope, metric;
   PetscScalar *p;
 
@@ -105,68 +103,74 @@ static PetscErrorCode SolveStep(EqmSolver solver, PetscReal *promised, PetscBool
   PetscCall(VecRestoreArray(newton->step, &p));
   if (!*success) PetscFunctionReturn(0);
   PetscCall(VecDot(newton->gradient, newton->step, &slope));
-  PetscCall(EqmDomainExpand(solver->domain, &solver->place, newton->step, newton->velocity));
-  PetscCall(EqmLaplacianEnergy(solver->mesh, newton->weights, solver->domain->dim, newton->velocity, &metric));
+  PetscCall(EqmDomainExpand(method->problem->domain, &iterate->place, newton->step, newton->velocity));
+  PetscCall(EqmLaplacianEnergy(method->problem->mesh, newton->weights, method->problem->domain->dim, newton->velocity,
+                               &metric));
   *promised = -.5 * slope + newton->mu * metric; /* the metric's energy is half p^T M p */
   PetscFunctionReturn(0);
 }
 
 /* `gain`: the decrease over what was promised. */
-static PetscErrorCode AcceptTrial(EqmSolver solver, PetscReal energy, PetscReal gain)
+static PetscErrorCode AcceptTrial(EqmMethod method, EqmIterate iterate, PetscReal energy, PetscReal gain)
 {
-  Newton *const newton = solver->data;
+  Newton *const newton = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmSolverAccept(solver, &newton->trial, newton->image, energy, 1.));
+  PetscCall(EqmIterateAccept(method->problem, iterate, &newton->trial, newton->image, energy, 1.));
   PetscCall(VecCopy(newton->trial_gradient, newton->gradient));
-  PetscCall(VecNorm(newton->gradient, NORM_2, &solver->gradient_norm));
+  PetscCall(VecNorm(newton->gradient, NORM_2, &iterate->gradient_norm));
   if (gain > .75) newton->mu = PetscMax(.25 * newton->mu, 1e-12);
   if (gain < .25) newton->mu *= 3.;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
-  Newton *const newton = solver->data;
+  Newton *const newton = method->data;
   PetscReal promised, energy;
 
   PetscFunctionBegin;
-  PetscCall(Linearise(solver));
+  PetscCall(Linearise(method, iterate));
   *outcome = EQM_STEP_STALLED;
   for (PetscInt damping = 0; damping < MOST_DAMPINGS; damping++, newton->mu = PetscMax(4. * newton->mu, 1e-10)) {
     PetscBool success;
-    PetscCall(EqmLinearFactor(newton->linear, CellMatrix, solver, 1., &success));
-    if (success) PetscCall(SolveStep(solver, &promised, &success));
+    PetscCall(EqmLinearFactor(newton->linear, CellMatrix, method, 1., &success));
+    if (success) PetscCall(SolveStep(method, iterate, &promised, &success));
     if (!success) continue;
-    if (promised <= 1e-13 * solver->objective) { /* what is left is rounding */
+    if (promised <= 1e-13 * iterate->objective) { /* what is left is rounding */
       *outcome = EQM_STEP_CONVERGED;
       PetscFunctionReturn(0);
     }
-    PetscCall(EqmDomainMove(solver->domain, &solver->place, 1., newton->step, &newton->trial));
-    PetscCall(EqmAuthalicEnergy(solver->domain, &newton->trial, newton->image, &energy, newton->trial_gradient));
-    const PetscReal gain = (solver->objective - energy) / promised;
+    PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, 1., newton->step, &newton->trial));
+    PetscCall(
+        EqmAuthalicEnergy(method->problem->domain, &newton->trial, newton->image, &energy, newton->trial_gradient));
+    const PetscReal gain = (iterate->objective - energy) / promised;
     if (!(gain > 1e-4)) continue;
-    PetscCall(AcceptTrial(solver, energy, gain));
+    PetscCall(AcceptTrial(method, iterate, energy, gain));
     *outcome = EQM_STEP_TAKEN;
     PetscFunctionReturn(0);
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode State(EqmSolver solver, EqmState state)
+static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
-  Newton *const newton = solver->data;
+  Newton *const newton = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmStateReal(state, "mu", &newton->mu));
   PetscFunctionReturn(0);
 }
 
-const EqmMethod EqmMethodNewton = {
-    .name = "newton",
-    .purpose = "damped Newton steps with the exact Hessian: a coupled factorisation each, for up to 100,000 vertices",
-    .set_up = SetUp,
-    .step = Step,
-    .state = State,
-    .destroy = Destroy,
-};
+PetscErrorCode EqmMethodCreateNewton(EqmMethod method)
+{
+  Newton *newton;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&newton));
+  method->data = newton;
+  method->purpose =
+      "damped Newton steps with the exact Hessian: a coupled factorisation each, for up to 100,000 vertices";
+  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State, .reset = Reset};
+  PetscFunctionReturn(0);
+}

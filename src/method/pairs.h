@@ -3,7 +3,7 @@
 #define EQM_PAIRS_H
 
 #include <petscvec.h>
-#include "method/state.h"
+#include "problem/state.h"
 
 /* q <- H0 q: the inverse Hessian that the pairs correct. Collective. */
 typedef PetscErrorCode (*EqmApplyInverse)(void *context, Vec q);

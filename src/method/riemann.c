@@ -12,41 +12,39 @@ typedef struct {
   Vec gradient, trial_gradient, direction;
 } Riemann;
 
-static PetscErrorCode SetUp(EqmSolver solver)
+static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
   enum { MEMORY = 20 };
-  Riemann *data;
+  Riemann *const data = method->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&data));
-  solver->data = data;
-  PetscCall(EqmRiemannCreate(solver, &data->riemann));
-  PetscCall(EqmPlaceCreate(solver->domain, &data->trial));
-  PetscCall(EqmPlaceCreate(solver->domain, &data->metric_of));
-  PetscCall(EqmRiemannCreateVec(solver, data->riemann, &data->gradient));
+  PetscCall(EqmRiemannCreate(method->problem, &data->riemann));
+  PetscCall(EqmPlaceCreate(method->problem->domain, &data->trial));
+  PetscCall(EqmPlaceCreate(method->problem->domain, &data->metric_of));
+  PetscCall(EqmRiemannCreateVec(method->problem, data->riemann, &data->gradient));
   PetscCall(VecDuplicate(data->gradient, &data->trial_gradient));
   PetscCall(VecDuplicate(data->gradient, &data->direction));
   PetscCall(EqmPairsCreate(data->gradient, MEMORY, &data->pairs));
-  PetscCall(EqmRiemannCentre(solver, data->riemann, &solver->place));
-  PetscCall(EqmLoopMetricCreate(solver->mesh, data->riemann->num_boundary, data->riemann->boundary, solver->place.x,
-                                &data->metric));
-  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &data->metric_of));
-  PetscCall(EqmRiemannEnergy(solver, data->riemann, &solver->place, &solver->objective, data->gradient));
-  PetscCall(VecNorm(data->gradient, NORM_2, &solver->gradient_norm));
-  PetscCall(EqmSolverLook(solver));
+  PetscCall(EqmRiemannCentre(method->problem, data->riemann, &iterate->place));
+  PetscCall(EqmLoopMetricCreate(method->problem->mesh, data->riemann->num_boundary, data->riemann->boundary,
+                                iterate->place.x, &data->metric));
+  PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &data->metric_of));
+  PetscCall(EqmRiemannEnergy(method->problem, data->riemann, &iterate->place, &iterate->objective, data->gradient));
+  PetscCall(VecNorm(data->gradient, NORM_2, &iterate->gradient_norm));
+  PetscCall(EqmIterateUpdate(method->problem, iterate));
   PetscFunctionReturn(0);
 }
 
 /* Boundary angles, as one number per vertex of the mesh. */
 static PetscErrorCode VisitAngles(EqmState state, void *context, const char *name, Vec angles)
 {
-  const EqmSolver solver = context;
-  const EqmRiemann riemann = ((Riemann *)solver->data)->riemann;
+  const EqmMethod method = context;
+  const EqmRiemann riemann = ((Riemann *)method->data)->riemann;
   PetscReal *local;
   PetscScalar *values;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(solver->mesh->num_local, &local));
+  PetscCall(PetscCalloc1(method->problem->mesh->num_local, &local));
   PetscCall(VecGetArray(angles, &values));
   for (PetscInt b = 0; b < riemann->num_boundary; b++) local[riemann->boundary[b]] = values[b];
   PetscCall(EqmStateVertices(state, name, 1, local));
@@ -56,25 +54,25 @@ static PetscErrorCode VisitAngles(EqmState state, void *context, const char *nam
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode State(EqmSolver solver, EqmState state)
+static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
-  Riemann *const data = solver->data;
+  Riemann *const data = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmStatePlace(state, solver->domain, "metric_of", &data->metric_of));
+  PetscCall(EqmStatePlace(state, method->problem->domain, "metric_of", &data->metric_of));
   if (EqmStateIsLoading(state)) {
     PetscCall(EqmLoopMetricDestroy(&data->metric));
-    PetscCall(EqmLoopMetricCreate(solver->mesh, data->riemann->num_boundary, data->riemann->boundary, data->metric_of.x,
-                                  &data->metric));
+    PetscCall(EqmLoopMetricCreate(method->problem->mesh, data->riemann->num_boundary, data->riemann->boundary,
+                                  data->metric_of.x, &data->metric));
   }
-  PetscCall(VisitAngles(state, solver, "gradient", data->gradient));
-  PetscCall(EqmPairsState(data->pairs, state, VisitAngles, solver));
+  PetscCall(VisitAngles(state, method, "gradient", data->gradient));
+  PetscCall(EqmPairsState(data->pairs, state, VisitAngles, method));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(EqmSolver solver)
+static PetscErrorCode Reset(EqmMethod method)
 {
-  Riemann *const data = solver->data;
+  Riemann *const data = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmPlaceDestroy(&data->metric_of));
@@ -85,7 +83,6 @@ static PetscErrorCode Destroy(EqmSolver solver)
   PetscCall(VecDestroy(&data->gradient));
   PetscCall(VecDestroy(&data->trial_gradient));
   PetscCall(VecDestroy(&data->direction));
-  PetscCall(PetscFree(solver->data));
   PetscFunctionReturn(0);
 }
 
@@ -104,26 +101,26 @@ static PetscErrorCode ApplyMetric(void *context, Vec q)
 
 /* Armijo by halving, from the longest step that keeps the boundary's order; leaves the trial's map, energy and
  * gradient. `t` 0: no decrease. */
-static PetscErrorCode Backtrack(EqmSolver solver, PetscReal slope, PetscReal *t, PetscReal *energy)
+static PetscErrorCode Backtrack(EqmMethod method, EqmIterate iterate, PetscReal slope, PetscReal *t, PetscReal *energy)
 {
   enum { MOST_TRIALS = 25 };
-  Riemann *const data = solver->data;
+  Riemann *const data = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmRiemannStepInOrder(solver, data->riemann, &solver->place, data->direction, t));
+  PetscCall(EqmRiemannStepInOrder(method->problem, data->riemann, &iterate->place, data->direction, t));
   for (PetscInt trial = 0; trial < MOST_TRIALS; trial++) {
-    PetscCall(EqmRiemannMove(solver, data->riemann, &solver->place, *t, data->direction, &data->trial));
-    PetscCall(EqmRiemannEnergy(solver, data->riemann, &data->trial, energy, data->trial_gradient));
-    if (*energy - solver->objective <= 1e-4 * *t * slope) PetscFunctionReturn(0);
+    PetscCall(EqmRiemannMove(method->problem, data->riemann, &iterate->place, *t, data->direction, &data->trial));
+    PetscCall(EqmRiemannEnergy(method->problem, data->riemann, &data->trial, energy, data->trial_gradient));
+    if (*energy - iterate->objective <= 1e-4 * *t * slope) PetscFunctionReturn(0);
     *t *= .5;
   }
   *t = 0.;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
-  Riemann *const data = solver->data;
+  Riemann *const data = method->data;
   PetscReal slope, t, energy;
 
   PetscFunctionBegin;
@@ -134,24 +131,27 @@ static PetscErrorCode Step(EqmSolver solver, EqmStep *outcome)
   *outcome = EQM_STEP_CONVERGED;
   if (-slope <= PETSC_MACHINE_EPSILON * PETSC_PI) PetscFunctionReturn(0); /* of energies that are differences of pi */
   *outcome = EQM_STEP_STALLED;
-  PetscCall(Backtrack(solver, slope, &t, &energy));
+  PetscCall(Backtrack(method, iterate, slope, &t, &energy));
   if (t == 0.) PetscFunctionReturn(0);
   PetscCall(EqmPairsAdd(data->pairs, t, data->direction, data->gradient, data->trial_gradient));
   PetscCall(VecCopy(data->trial_gradient, data->gradient));
-  PetscCall(EqmPlaceCopy(solver->domain, &data->trial, &solver->place));
-  PetscCall(EqmSolverLook(solver));
-  PetscCall(VecNorm(data->gradient, NORM_2, &solver->gradient_norm));
-  solver->objective = energy;
-  solver->step_length = t;
+  PetscCall(EqmPlaceCopy(method->problem->domain, &data->trial, &iterate->place));
+  PetscCall(EqmIterateUpdate(method->problem, iterate));
+  PetscCall(VecNorm(data->gradient, NORM_2, &iterate->gradient_norm));
+  iterate->objective = energy;
+  iterate->step_length = t;
   *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
 }
 
-const EqmMethod EqmMethodRiemann = {
-    .name = "riemann",
-    .purpose = "Riemann map by the boundary's angles, the interior harmonic: one factorisation",
-    .set_up = SetUp,
-    .step = Step,
-    .state = State,
-    .destroy = Destroy,
-};
+PetscErrorCode EqmMethodCreateRiemann(EqmMethod method)
+{
+  Riemann *data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&data));
+  method->data = data;
+  method->purpose = "Riemann map by the boundary's angles, the interior harmonic: one factorisation";
+  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State, .reset = Reset};
+  PetscFunctionReturn(0);
+}

@@ -23,22 +23,22 @@ struct _p_EqmRiemann {
 };
 
 /* Factors L_II, the one factorisation. Collective. */
-PETSC_INTERN PetscErrorCode EqmRiemannCreate(EqmSolver solver, EqmRiemann *riemann);
+PETSC_INTERN PetscErrorCode EqmRiemannCreate(EqmProblem problem, EqmRiemann *riemann);
 PETSC_INTERN PetscErrorCode EqmRiemannDestroy(EqmRiemann *riemann);
 /* A vector of boundary angles. Collective. */
-PETSC_INTERN PetscErrorCode EqmRiemannCreateVec(EqmSolver solver, EqmRiemann riemann, Vec *angles);
+PETSC_INTERN PetscErrorCode EqmRiemannCreateVec(EqmProblem problem, EqmRiemann riemann, Vec *angles);
 /* Turn the boundary by t times `angles`; the interior is left where it was. Collective. */
-PETSC_INTERN PetscErrorCode EqmRiemannMove(EqmSolver solver, EqmRiemann riemann, const EqmPlace *from, PetscReal t,
+PETSC_INTERN PetscErrorCode EqmRiemannMove(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from, PetscReal t,
                                            Vec angles, EqmPlace *to);
 /* The largest t in (0, 1] for which t times `angles` keeps the boundary's order, with a margin. Collective. */
-PETSC_INTERN PetscErrorCode EqmRiemannStepInOrder(EqmSolver solver, EqmRiemann riemann, const EqmPlace *from,
+PETSC_INTERN PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from,
                                                   Vec angles, PetscReal *t);
 /* E and its gradient by the angles, where `place` has the boundary; puts the interior at its place. Two solves, one
    evaluation. Collective. */
-PETSC_INTERN PetscErrorCode EqmRiemannEnergy(EqmSolver solver, EqmRiemann riemann, EqmPlace *place, PetscReal *energy,
+PETSC_INTERN PetscErrorCode EqmRiemannEnergy(EqmProblem problem, EqmRiemann riemann, EqmPlace *place, PetscReal *energy,
                                              Vec gradient);
 /* Bring the mass centre to the disk's centre by a Moebius map of the disk to itself, applied to the boundary.
    Collective. */
-PETSC_INTERN PetscErrorCode EqmRiemannCentre(EqmSolver solver, EqmRiemann riemann, EqmPlace *place);
+PETSC_INTERN PetscErrorCode EqmRiemannCentre(EqmProblem problem, EqmRiemann riemann, EqmPlace *place);
 
 #endif

@@ -2,9 +2,9 @@
 #include "method/riemann.h"
 
 /* h = m_B - L_BI L_II^-1 m_I: weights of the boundary's vertices in the mass centre of a harmonic map. */
-static PetscErrorCode FindCentreWeights(EqmSolver solver, EqmRiemann riemann)
+static PetscErrorCode FindCentreWeights(EqmProblem problem, EqmRiemann riemann)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   PetscReal *mass, *image = riemann->scratch;
 
   PetscFunctionBegin;
@@ -16,7 +16,7 @@ static PetscErrorCode FindCentreWeights(EqmSolver solver, EqmRiemann riemann)
     riemann->centre[b] = mass[riemann->boundary[b]];
     mass[riemann->boundary[b]] = 0.;
   }
-  PetscCall(EqmGroupSolve(solver, 1, mass)); /* the boundary's rows are identities */
+  PetscCall(EqmGroupSolve(problem, 1, mass)); /* the boundary's rows are identities */
   PetscCall(EqmMeshUpdateGhosts(mesh, 1, mass));
   PetscCall(EqmLaplacianApply(mesh, riemann->weights, 1, mass, image));
   for (PetscInt b = 0; b < riemann->num_boundary; b++) riemann->centre[b] -= image[riemann->boundary[b]];
@@ -24,9 +24,9 @@ static PetscErrorCode FindCentreWeights(EqmSolver solver, EqmRiemann riemann)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmRiemannCreate(EqmSolver solver, EqmRiemann *out)
+PetscErrorCode EqmRiemannCreate(EqmProblem problem, EqmRiemann *out)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   EqmRiemann riemann;
 
   PetscFunctionBegin;
@@ -38,11 +38,11 @@ PetscErrorCode EqmRiemannCreate(EqmSolver solver, EqmRiemann *out)
     riemann->group[v] = mesh->on_boundary[v] ? EQM_GROUP_FIXED : 0;
     if (v < mesh->num_owned && mesh->on_boundary[v]) riemann->boundary[riemann->num_boundary++] = v;
   }
-  PetscCall(EqmDomainCreateVec(solver->domain, &riemann->move));
+  PetscCall(EqmDomainCreateVec(problem->domain, &riemann->move));
   PetscCall(VecZeroEntries(riemann->move));
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_COTANGENT, &solver->place, riemann->weights));
-  PetscCall(EqmGroupFactor(solver, riemann->weights, riemann->group, NULL));
-  PetscCall(FindCentreWeights(solver, riemann));
+  PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_COTANGENT, NULL, riemann->weights));
+  PetscCall(EqmGroupFactor(problem, riemann->weights, riemann->group, NULL));
+  PetscCall(FindCentreWeights(problem, riemann));
   *out = riemann;
   PetscFunctionReturn(0);
 }
@@ -58,17 +58,17 @@ PetscErrorCode EqmRiemannDestroy(EqmRiemann *riemann)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmRiemannCreateVec(EqmSolver solver, EqmRiemann riemann, Vec *angles)
+PetscErrorCode EqmRiemannCreateVec(EqmProblem problem, EqmRiemann riemann, Vec *angles)
 {
   PetscFunctionBegin;
-  PetscCall(VecCreateMPI(solver->comm, riemann->num_boundary, solver->mesh->num_boundary_vertices, angles));
+  PetscCall(VecCreateMPI(problem->comm, riemann->num_boundary, problem->mesh->num_boundary_vertices, angles));
   PetscFunctionReturn(0);
 }
 
 /* Boundary angles as degrees of freedom of the domain. */
-static PetscErrorCode Spread(EqmSolver solver, EqmRiemann riemann, Vec angles)
+static PetscErrorCode Spread(EqmProblem problem, EqmRiemann riemann, Vec angles)
 {
-  const EqmDomain domain = solver->domain;
+  const EqmDomain domain = problem->domain;
   const PetscScalar *from;
   PetscScalar *to;
 
@@ -82,25 +82,25 @@ static PetscErrorCode Spread(EqmSolver solver, EqmRiemann riemann, Vec angles)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmRiemannMove(EqmSolver solver, EqmRiemann riemann, const EqmPlace *from, PetscReal t, Vec angles,
+PetscErrorCode EqmRiemannMove(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from, PetscReal t, Vec angles,
                               EqmPlace *to)
 {
   PetscFunctionBegin;
-  PetscCall(Spread(solver, riemann, angles));
-  PetscCall(EqmDomainMove(solver->domain, from, t, riemann->move, to));
+  PetscCall(Spread(problem, riemann, angles));
+  PetscCall(EqmDomainMove(problem->domain, from, t, riemann->move, to));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmRiemannStepInOrder(EqmSolver solver, EqmRiemann riemann, const EqmPlace *from, Vec angles,
+PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from, Vec angles,
                                      PetscReal *t)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   PetscReal *velocity, local = 1.;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2 * mesh->num_local, &velocity));
-  PetscCall(Spread(solver, riemann, angles));
-  PetscCall(EqmDomainExpand(solver->domain, from, riemann->move, velocity));
+  PetscCall(Spread(problem, riemann, angles));
+  PetscCall(EqmDomainExpand(problem->domain, from, riemann->move, velocity));
   for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
     const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
     const PetscReal *const p = from->x + 2 * i, *const q = from->x + 2 * j, *const u = velocity + 2 * i,
@@ -133,15 +133,16 @@ static PetscReal AddArea(EqmMesh mesh, const PetscReal *x, PetscReal *slope)
   return energy;
 }
 
-PetscErrorCode EqmRiemannEnergy(EqmSolver solver, EqmRiemann riemann, EqmPlace *place, PetscReal *energy, Vec gradient)
+PetscErrorCode EqmRiemannEnergy(EqmProblem problem, EqmRiemann riemann, EqmPlace *place, PetscReal *energy,
+                                Vec gradient)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   PetscReal sum[3] = {0., 0., 0.}, *slope; /* energy without the last term, mass centre */
   PetscScalar *g;
   EqmWork *work;
 
   PetscFunctionBegin;
-  PetscCall(EqmHeldExtend(solver, riemann->weights, riemann->group, 2, place->x));
+  PetscCall(EqmHeldExtend(problem, riemann->weights, riemann->group, 2, place->x));
   PetscCall(EqmLaplacianApply(mesh, riemann->weights, 2, place->x, riemann->scratch));
   PetscCall(PetscCalloc1(mesh->num_owned, &slope));
   sum[0] = AddArea(mesh, place->x, slope);
@@ -177,7 +178,7 @@ static void MoveCircle(const PetscReal a[2], PetscReal *z)
   for (PetscInt k = 0; k < 2; k++) z[k] = moved[k] / length;
 }
 
-PetscErrorCode EqmRiemannCentre(EqmSolver solver, EqmRiemann riemann, EqmPlace *place)
+PetscErrorCode EqmRiemannCentre(EqmProblem problem, EqmRiemann riemann, EqmPlace *place)
 {
   enum { MOST_ROUNDS = 50 };
   const PetscReal longest = .5;
@@ -190,7 +191,7 @@ PetscErrorCode EqmRiemannCentre(EqmSolver solver, EqmRiemann riemann, EqmPlace *
       const PetscReal term[5] = {z[0], z[1], 1., z[0] * z[0] - z[1] * z[1], 2. * z[0] * z[1]};
       for (PetscInt k = 0; k < 5; k++) sum[k] += h * term[k];
     }
-    PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 5, MPIU_REAL, MPIU_SUM, solver->comm));
+    PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 5, MPIU_REAL, MPIU_SUM, problem->comm));
     if (sum[0] * sum[0] + sum[1] * sum[1] < 1e-24) break;
     /* Newton: to first order in a the centre moves by a (h . 1) - conj(a) (h . z^2) */
     const PetscReal m[3] = {sum[2] - sum[3], -sum[4], sum[2] + sum[3]}, det = m[0] * m[2] - m[1] * m[1];
@@ -199,6 +200,6 @@ PetscErrorCode EqmRiemannCentre(EqmSolver solver, EqmRiemann riemann, EqmPlace *
     for (PetscInt k = 0; k < 2 && length > longest; k++) a[k] *= longest / length;
     for (PetscInt b = 0; b < riemann->num_boundary; b++) MoveCircle(a, place->x + 2 * riemann->boundary[b]);
   }
-  PetscCall(EqmMeshUpdateGhosts(solver->mesh, 2, place->x));
+  PetscCall(EqmMeshUpdateGhosts(problem->mesh, 2, place->x));
   PetscFunctionReturn(0);
 }

@@ -2,8 +2,8 @@
 #include "register/registration.h"
 #include "register/closest.h"
 #include "register/landmark_flow.h"
-#include "register/rotation.h"
-#include "method/method.h"
+#include "geometry/rotation.h"
+#include "solver/inner.h"
 
 /* 000 section 6: the rotation of A's map that brings the landmarks closest to their goals. Collective. */
 PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r)
@@ -29,18 +29,21 @@ static PetscErrorCode MinimiseOnce(EqmRegistration r, EqmSide *side, const Petsc
                                    PetscReal weight, PetscBool *reached)
 {
   EqmSolver solver;
+  const EqmPlace *place;
 
   PetscFunctionBegin;
   if (!r->set.quiet)
     PetscCall(PetscPrintf(r->comm, "h for %s: landmarks drawn with weight %g\n", side->name, (double)weight));
   PetscCall(EqmSolverCreate(side->mesh, r->target, &solver));
-  solver->settings.ratio_tol = EQM_REGISTER_RATIO_TOL;
+  PetscCall(EqmSolverSetTolerances(solver, PETSC_DEFAULT, EQM_REGISTER_RATIO_TOL, PETSC_DEFAULT, PETSC_DEFAULT));
+  PetscCall(EqmSolverSetMonitor(solver, EqmSolverMonitorText, NULL));
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmSolverSetFirstMap(solver, r->dim, side->x));
   PetscCall(EqmSolverSetLandmarks(solver, r->landmarks.num, r->dim, vertices, goal, weight, r->set.tolerance));
   PetscCall(EqmRegistrationMinimise(r, solver));
   PetscCall(EqmSolverLandmarksReached(solver, reached));
-  PetscCall(PetscArraycpy(side->x, solver->place.x, r->dim * side->mesh->num_local));
+  PetscCall(EqmSolverGetPlaces(solver, &place));
+  PetscCall(PetscArraycpy(side->x, place->x, r->dim * side->mesh->num_local));
   if (side->read == side->map) side->read = NULL;
   PetscCall(EqmMapDestroy(&side->map));
   PetscCall(EqmSolverGetMap(solver, side->intake.mapped, &side->map));

@@ -1,6 +1,6 @@
 /* Without landmarks: the rotation of A's map under which A, carried to B, is most like a rigid motion of A. */
 #include "register/sample.h"
-#include "register/rotation.h"
+#include "geometry/rotation.h"
 #include <math.h>
 
 enum { COARSE = 300, FINE = 1500, TRIALS = 300, ANGLES = 180, REFINED = 4, FEW_STEPS = 6, MOST_STEPS = 40 };

@@ -1,6 +1,6 @@
 /* The registration as an object: the way from two files to a correspondence, the figures for people. */
 #include "register/registration.h"
-#include "method/method.h"
+#include "solver/inner.h"
 #include "store/keptmesh.h"
 #include <string.h>
 
@@ -66,7 +66,7 @@ static PetscErrorCode CheckMethod(EqmRegistration r)
   if (r->kind == EQM_IMAGE_SPACE) PetscFunctionReturn(0);
   PetscCall(EqmSolverCreate(r->a.mesh, r->target, &solver));
   PetscCall(EqmSolverSetFromOptions(solver));
-  PetscCall(EqmSolverCheckDraws(solver));
+  PetscCall(EqmSolverRequireLandmarks(solver));
   PetscCall(EqmSolverDestroy(&solver));
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,7 @@
 
 #include <equimap/register.h>
 #include "register/field.h"
-#include "register/landmark_list.h"
+#include "format/landmark_list.h"
 #include "register/origin.h"
 #include "base/stop.h"
 #include "store/map_private.h"

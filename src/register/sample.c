@@ -1,6 +1,6 @@
 /* A sample of vertices and how far A carried to B is from a rigid motion of A. */
 #include "register/sample.h"
-#include "register/rotation.h"
+#include "geometry/rotation.h"
 
 PetscErrorCode EqmSampleDestroy(EqmSample *s)
 {

@@ -2,7 +2,7 @@
 #include "register/registration.h"
 #include "register/closest.h"
 #include "base/lookup.h"
-#include "method/method.h"
+#include "solver/inner.h"
 #include "h5/h5.h"
 #include "store/keptmesh.h"
 #include "store/store.h"
@@ -214,6 +214,7 @@ PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, c
 PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side)
 {
   EqmSolver solver;
+  const EqmPlace *place;
 
   PetscFunctionBegin;
   if (side->map || r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
@@ -221,14 +222,16 @@ PetscErrorCode EqmSideSolve(EqmRegistration r, EqmSide *side)
     PetscCall(PetscPrintf(r->comm, "map of %s: %s to the %s\n", side->name, side->soup->file, r->target));
   PetscCall(EqmSolverCreate(side->mesh, r->target, &solver));
   if (side->mesh->cell_size == 3) {
-    solver->settings.ratio_tol = EQM_REGISTER_RATIO_TOL;
-    solver->settings.lm_inner = EQM_REGISTER_INNER;
+    PetscCall(EqmSolverSetTolerances(solver, PETSC_DEFAULT, EQM_REGISTER_RATIO_TOL, PETSC_DEFAULT, PETSC_DEFAULT));
+    PetscCall(EqmSolverSetInnerSteps(solver, EQM_REGISTER_INNER));
   }
+  PetscCall(EqmSolverSetMonitor(solver, EqmSolverMonitorText, NULL));
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmRegistrationMinimise(r, solver));
   PetscCall(EqmSolverGetMap(solver, side->intake.mapped, &side->map));
   PetscCall(PetscMalloc1(r->dim * side->mesh->num_local, &side->x));
-  PetscCall(PetscArraycpy(side->x, solver->place.x, r->dim * side->mesh->num_local));
+  PetscCall(EqmSolverGetPlaces(solver, &place));
+  PetscCall(PetscArraycpy(side->x, place->x, r->dim * side->mesh->num_local));
   PetscCall(EqmSolverDestroy(&solver));
   PetscFunctionReturn(0);
 }

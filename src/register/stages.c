@@ -1,7 +1,7 @@
 /* A registration as a long run: its minimisations, each with a checkpoint of its own, copies of its meshes beside them,
    requests to stop between its steps. */
 #include "register/registration.h"
-#include "method/method.h"
+#include "solver/inner.h"
 #include "store/keptmesh.h"
 #include <libgen.h>
 
@@ -53,16 +53,20 @@ PetscErrorCode EqmKeepMeshes(EqmRegistration r)
 
 PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver)
 {
+  EqmStatus status;
+  const char *message;
+
   PetscFunctionBegin;
   PetscCall(EqmSolverSetStage(solver, ++r->stage));
   PetscCall(EqmSolverSetStopFile(solver, &r->stop_file));
-  PetscCall(PetscStrncpy(solver->checkpoints.kept_mesh, r->kept, sizeof(solver->checkpoints.kept_mesh)));
+  PetscCall(EqmSolverSetKeptMesh(solver, r->kept));
   PetscCall(EqmSolverSolve(solver));
-  r->unsaved = solver->checkpoints.failing;
-  if (solver->status != EQM_STATUS_STOPPED) PetscFunctionReturn(0);
-  r->status = solver->status;
+  PetscCall(EqmSolverCheckpointFailed(solver, &r->unsaved));
+  PetscCall(EqmSolverGetStatus(solver, &status, &message));
+  if (status != EQM_STATUS_STOPPED) PetscFunctionReturn(0);
+  r->status = status;
   r->told = (PetscBool)!r->set.quiet; /* by the solver */
-  PetscCall(PetscStrncpy(r->message, solver->message, sizeof(r->message)));
+  PetscCall(PetscStrncpy(r->message, message, sizeof(r->message)));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,6 @@
-/* First maps of solids to the ball (003 section 4): the surface goes to the sphere by the sphere's own solver, the
+/* First maps of solids to the ball (003 section 4): the surface goes to the sphere by a map that is handed in, the
    interior follows by volumetric stretch energy minimisation with the boundary held. */
-#include "method/method.h"
+#include "start/start.h"
 #include "geometry/simplex.h"
 
 /* Mean and covariance of the vertices' places (003 (12)). */
@@ -61,14 +61,14 @@ static void PrincipalAxes(PetscReal covariance[9], PetscReal axes[9])
 
 /* Places of the mesh's vertices, for an anisotropic scaling turned and scaled to fill the cube [-1, 1]^3 (003 (11),
    with the largest absolute value that it means). */
-static PetscErrorCode PlaceMesh(EqmSolver solver, EqmPlace *place)
+static PetscErrorCode PlaceMesh(EqmProblem problem, PetscBool scaled, EqmPlace *place)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   PetscReal center[3], covariance[9], axes[9], local[3] = {0.}, largest[3];
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(place->x, mesh->position, 3 * mesh->num_local));
-  if (!solver->settings.anisotropic_scaling) PetscFunctionReturn(0);
+  if (!scaled) PetscFunctionReturn(0);
   PetscCall(Moments(mesh, center, covariance));
   PrincipalAxes(covariance, axes);
   for (PetscInt v = 0; v < mesh->num_local; v++) {
@@ -81,39 +81,6 @@ static PetscErrorCode PlaceMesh(EqmSolver solver, EqmPlace *place)
   }
   PetscCall(MPIU_Allreduce(local, largest, 3, MPIU_REAL, MPIU_MAX, mesh->comm));
   for (PetscInt k = 0; k < 3 * mesh->num_local; k++) place->x[k] /= largest[k % 3];
-  PetscFunctionReturn(0);
-}
-
-/* Map the surface to the sphere with options of its own, and the same solvers; what the run does and how it ends
- * concerns the start only. */
-static PetscErrorCode MapSurface(EqmSolver solver, EqmMesh surface, EqmSolver *sphere)
-{
-  const EqmSettings *const set = &solver->settings;
-  const PetscBool by_fixed_point = (PetscBool)(solver->method == &EqmMethodFixedPoint);
-  const char *const method = !set->boundary_method[0] && by_fixed_point ? solver->method->name : set->boundary_method;
-  PetscInt max_it = set->boundary_max_it;
-  const char *enough = "";
-  char text[256];
-  PetscOptions options;
-
-  PetscFunctionBegin;
-  if (max_it < 0) {
-    max_it = by_fixed_point ? 10 : 60;
-    enough = by_fixed_point ? "" : " -ratio_tol .01"; /* a longer run would magnify the last digits of the input */
-  }
-  PetscCall(PetscSNPrintf(text, sizeof(text), "-quiet -max_it %" PetscInt_FMT "%s%s%s%s%s", max_it, enough,
-                          method[0] ? " -method " : "", method, set->boundary_start[0] ? " -start " : "",
-                          set->boundary_start));
-  PetscCall(PetscOptionsCreate(&options));
-  PetscCall(PetscOptionsInsertString(options, text));
-  PetscCall(EqmLinearPassOptions(options));
-  PetscCall(PetscOptionsPush(options));
-  PetscCall(EqmSolverCreate(surface, "sphere", sphere));
-  PetscCall(EqmSolverSetFromOptions(*sphere));
-  (*sphere)->checkpoints.deaf = PETSC_TRUE; /* a start that was cut short would be another start */
-  PetscCall(EqmSolverSolve(*sphere));
-  PetscCall(PetscOptionsPop());
-  PetscCall(PetscOptionsDestroy(&options));
   PetscFunctionReturn(0);
 }
 
@@ -134,31 +101,32 @@ static PetscErrorCode CountWork(EqmLedger from, EqmLedger to)
 }
 
 /* Boundary vertices from where the solid's surface is to the sphere, the others stay. */
-static PetscErrorCode PlaceBoundary(EqmSolver solver, EqmPlace *place)
+static PetscErrorCode PlaceBoundary(EqmProblem problem, const EqmStartOptions *options, EqmPlace *place)
 {
   EqmSurface surface;
   EqmLedger ledger;
   EqmMesh mesh;
-  EqmSolver sphere;
-  PetscReal *slab;
+  PetscReal *slab, *x;
+  PetscInt64 folds;
 
   PetscFunctionBegin;
-  PetscCall(EqmSurfaceCreate(solver->mesh, &surface));
+  PetscCall(EqmSurfaceCreate(problem->mesh, &surface));
   PetscCall(EqmSurfaceFromSolid(surface, 3, place->x, surface->soup->vertices));
-  PetscCall(EqmLedgerCreate(solver->comm, &ledger));
+  PetscCall(EqmLedgerCreate(problem->comm, &ledger));
   PetscCall(EqmMeshCreate(surface->soup, ledger, &mesh));
-  PetscCall(MapSurface(solver, mesh, &sphere));
-  if (sphere->totals.folds > 0 && !solver->settings.quiet)
-    PetscCall(PetscPrintf(solver->comm,
-                          "the first map of the boundary has %" PetscInt64_FMT
-                          " folded triangles: folds of the solid are likely\n",
-                          sphere->totals.folds));
+  PetscCall(PetscMalloc1(3 * mesh->num_local, &x));
+  PetscCall(options->map_surface(options->context, mesh, x, &folds));
+  if (folds > 0)
+    PetscCall(EqmProblemNotify(problem,
+                               "the first map of the boundary has %" PetscInt64_FMT
+                               " folded triangles: folds of the solid are likely\n",
+                               folds));
   PetscCall(PetscMalloc1(3 * (surface->soup->vertex_end - surface->soup->vertex_start), &slab));
-  PetscCall(EqmMeshVerticesToInput(mesh, surface->soup, 3, sphere->place.x, slab));
+  PetscCall(EqmMeshVerticesToInput(mesh, surface->soup, 3, x, slab));
   PetscCall(EqmSurfaceToSolid(surface, 3, slab, place->x));
-  PetscCall(CountWork(ledger, solver->mesh->ledger));
+  PetscCall(CountWork(ledger, problem->mesh->ledger));
   PetscCall(PetscFree(slab));
-  PetscCall(EqmSolverDestroy(&sphere));
+  PetscCall(PetscFree(x));
   PetscCall(EqmMeshDestroy(&mesh));
   PetscCall(EqmLedgerDestroy(&ledger));
   PetscCall(EqmSurfaceDestroy(&surface));
@@ -166,38 +134,44 @@ static PetscErrorCode PlaceBoundary(EqmSolver solver, EqmPlace *place)
 }
 
 /* The boundary alone decides the sign of the image's volume (003 section 3): a mirrored one turns every cell over. */
-static PetscErrorCode TurnMirrored(EqmSolver solver)
+static PetscErrorCode TurnMirrored(EqmProblem problem, EqmIterate iterate)
 {
   PetscFunctionBegin;
-  PetscCall(EqmImageMeasure(solver->domain, &solver->place, solver->image));
-  PetscCall(EqmImageSum(solver->mesh, solver->image, &solver->totals));
-  if (solver->totals.total > 0.) PetscFunctionReturn(0);
-  for (PetscInt v = 0; v < solver->mesh->num_local; v++) solver->place.x[3 * v] *= -1.;
+  PetscCall(EqmImageMeasure(problem->domain, &iterate->place, iterate->image));
+  PetscCall(EqmImageSum(problem->mesh, iterate->image, &iterate->totals));
+  if (iterate->totals.total > 0.) PetscFunctionReturn(0);
+  for (PetscInt v = 0; v < problem->mesh->num_local; v++) iterate->place.x[3 * v] *= -1.;
   PetscFunctionReturn(0);
 }
 
 /* Error that each solve leaves of the one that it finds, where the solver is an iteration. */
 static const PetscReal start_tolerance = 1e-3;
 
-PetscErrorCode EqmBallStart(EqmSolver solver, PetscInt steps)
+static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   signed char *group;
   PetscReal *weights;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(6 * mesh->num_local_cells, &weights, mesh->num_local, &group));
   for (PetscInt v = 0; v < mesh->num_local; v++) group[v] = mesh->on_boundary[v] ? EQM_GROUP_FIXED : 0;
-  PetscCall(PlaceMesh(solver, &solver->place));
+  PetscCall(PlaceMesh(problem, options->anisotropic_scaling, &iterate->place));
   /* L_V of the mesh's own places is the Laplacian of the Dirichlet energy: the first step is the harmonic map */
-  for (PetscInt k = 0; k <= steps; k++) {
-    PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
-    if (k == 0) PetscCall(PlaceBoundary(solver, &solver->place));
-    PetscCall(EqmHeldImprove(solver, weights, group, 3, start_tolerance, solver->place.x));
-    if (k == 0) PetscCall(TurnMirrored(solver));
-    PetscCall(EqmLinearKeepCoarseSpaces(solver->scalar, (PetscBool)(k > 0))); /* from image to image little changes */
+  for (PetscInt k = 0; k <= options->steps; k++) {
+    PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, weights));
+    if (k == 0) PetscCall(PlaceBoundary(problem, options, &iterate->place));
+    PetscCall(EqmHeldImprove(problem, weights, group, 3, start_tolerance, iterate->place.x));
+    if (k == 0) PetscCall(TurnMirrored(problem, iterate));
+    PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, (PetscBool)(k > 0))); /* from image to image little changes */
   }
-  PetscCall(EqmLinearKeepCoarseSpaces(solver->scalar, PETSC_FALSE));
+  PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, PETSC_FALSE));
   PetscCall(PetscFree2(weights, group));
   PetscFunctionReturn(0);
 }
+
+const EqmStartType EqmStartBallHarmonic = {EQM_STARTS_BALL, "harmonic",
+                                           "boundary area-preserving on the sphere, interior harmonic", 0, Run};
+const EqmStartType EqmStartBallFixedPoint = {EQM_STARTS_BALL, "fixed-point",
+                                             "harmonic, then fixed-point steps with the boundary held (003 section 4)",
+                                             4, Run};

@@ -2,12 +2,13 @@
    corners of one triangle. Conjugate gradients with the metric of conformal maps, (L + M)^-1, as preconditioner: they
    need a dozen steps, as the eigenvalues of the product lie between those of a sphere's first modes and one, and the
    map's one factor is that which the minimisation needs anyway. */
-#include "method/method.h"
+#include "start/start.h"
+#include "problem/metric.h"
 
 enum { WIDTH = 2, MOST_STEPS = 200 };
 
 typedef struct {
-  EqmSolver solver;
+  EqmProblem problem;
   const PetscReal *weights;
   PetscReal *residual, *image, *columns; /* WIDTH per owned vertex */
   PetscReal *direction;                  /* WIDTH per local vertex */
@@ -19,19 +20,19 @@ static PetscErrorCode Dot(const Cg *cg, const PetscReal *x, const PetscReal *y, 
   PetscReal sum[WIDTH] = {0., 0.};
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < WIDTH * cg->solver->mesh->num_owned; k++) sum[k % WIDTH] += x[k] * y[k];
-  PetscCall(MPIU_Allreduce(sum, product, WIDTH, MPIU_REAL, MPIU_SUM, cg->solver->comm));
+  for (PetscInt k = 0; k < WIDTH * cg->problem->mesh->num_owned; k++) sum[k % WIDTH] += x[k] * y[k];
+  PetscCall(MPIU_Allreduce(sum, product, WIDTH, MPIU_REAL, MPIU_SUM, cg->problem->comm));
   PetscFunctionReturn(0);
 }
 
 /* image <- (L + M)^-1 residual. */
 static PetscErrorCode Precondition(Cg *cg)
 {
-  const PetscInt n = cg->solver->mesh->num_owned;
+  const PetscInt n = cg->problem->mesh->num_owned;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < WIDTH * n; k++) cg->columns[(k % WIDTH) * n + k / WIDTH] = cg->residual[k];
-  PetscCall(EqmGroupSolve(cg->solver, WIDTH, cg->columns));
+  PetscCall(EqmGroupSolve(cg->problem, WIDTH, cg->columns));
   for (PetscInt k = 0; k < WIDTH * n; k++) cg->image[k] = cg->columns[(k % WIDTH) * n + k / WIDTH];
   PetscFunctionReturn(0);
 }
@@ -39,7 +40,7 @@ static PetscErrorCode Precondition(Cg *cg)
 /* From z = 0 for the right-hand side in `residual`. L is singular, but the right-hand side has the sum zero. */
 static PetscErrorCode Iterate(Cg *cg, PetscReal *z)
 {
-  const EqmMesh mesh = cg->solver->mesh;
+  const EqmMesh mesh = cg->problem->mesh;
   const PetscInt n = WIDTH * mesh->num_owned;
   const PetscReal tolerance = 1e-10;
   PetscReal rho[WIDTH], old[WIDTH] = {1., 1.}, first[WIDTH], curvature[WIDTH];
@@ -65,16 +66,17 @@ static PetscErrorCode Iterate(Cg *cg, PetscReal *z)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmDipoleSolve(EqmSolver solver, const PetscInt corner[3], const PetscReal charge[6], PetscReal *z)
+PetscErrorCode EqmDipoleSolve(EqmProblem problem, const EqmPlace *place, const PetscInt corner[3],
+                              const PetscReal charge[6], PetscReal *z)
 {
-  const EqmMesh mesh = solver->mesh;
-  Cg cg = {.solver = solver};
+  const EqmMesh mesh = problem->mesh;
+  Cg cg = {.problem = problem};
   EqmMetric metric;
 
   PetscFunctionBegin;
-  PetscCall(EqmAngleWeights(solver, &cg.weights));
-  PetscCall(EqmMetricCreate(solver, &metric));
-  PetscCall(EqmMetricRefresh(solver, metric));
+  PetscCall(EqmProblemGetAngleWeights(problem, &cg.weights));
+  PetscCall(EqmMetricCreate(problem, &metric));
+  PetscCall(EqmMetricRefresh(metric, place));
   PetscCall(EqmMetricDestroy(&metric));
   PetscCall(PetscMalloc4(WIDTH * mesh->num_owned, &cg.residual, WIDTH * mesh->num_owned, &cg.image,
                          WIDTH * mesh->num_owned, &cg.columns, WIDTH * mesh->num_local, &cg.direction));

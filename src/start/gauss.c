@@ -1,7 +1,8 @@
 /* The Gauss map: each vertex goes to its normal (004 Definition 5.1). Hollows fold; a few steps of heat flow on the
    sphere smooth that away. */
-#include "method/method.h"
+#include "start/start.h"
 #include "geometry/simplex.h"
+#include "unfold/unfold.h"
 
 /* Time step of the smoothing for a surface of area one; the sphere's slowest modes decay at rate 8 pi. */
 #define TIME_STEP .01
@@ -34,76 +35,84 @@ static PetscErrorCode SumNormals(EqmMesh mesh, PetscReal *x)
 }
 
 /* Implicit Euler for df/dt = -M^-1 L f in every coordinate, then back onto the sphere: (M/dt + L) f' = (M/dt) f. */
-static PetscErrorCode Smooth(EqmSolver solver, const PetscReal *mass, PetscReal *columns)
+static PetscErrorCode Smooth(EqmProblem problem, EqmIterate iterate, const PetscReal *mass, PetscReal *columns)
 {
-  const PetscInt n = solver->mesh->num_owned;
-  PetscReal *const x = solver->place.x, center[3];
+  const PetscInt n = problem->mesh->num_owned;
+  PetscReal *const x = iterate->place.x, center[3];
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < 3 * n; k++) columns[(k % 3) * n + k / 3] = mass[k / 3] / TIME_STEP * x[k];
-  PetscCall(EqmGroupSolve(solver, 3, columns));
+  PetscCall(EqmGroupSolve(problem, 3, columns));
   for (PetscInt k = 0; k < 3 * n; k++) x[k] = columns[(k % 3) * n + k / 3];
-  PetscCall(EqmPlaceMassCenter(solver->domain, mass, &solver->place, center));
-  PetscCall(EqmPlaceOntoSphere(solver->domain, center, &solver->place));
+  PetscCall(EqmPlaceMassCenter(problem->domain, mass, &iterate->place, center));
+  PetscCall(EqmPlaceOntoSphere(problem->domain, center, &iterate->place));
   PetscFunctionReturn(0);
 }
 
 /* Factor M/dt + L. */
-static PetscErrorCode FactorFlow(EqmSolver solver)
+static PetscErrorCode FactorFlow(EqmProblem problem)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   PetscReal *weights, *mass;
   signed char *group;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(3 * mesh->num_local_cells, &weights, mesh->num_local_cells, &mass));
   PetscCall(PetscCalloc1(mesh->num_local, &group));
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_COTANGENT, NULL, weights));
+  PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_COTANGENT, NULL, weights));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) mass[c] = mesh->weight[c] / TIME_STEP;
-  PetscCall(EqmGroupFactor(solver, weights, group, mass));
+  PetscCall(EqmGroupFactor(problem, weights, group, mass));
   PetscCall(PetscFree(group));
   PetscCall(PetscFree2(weights, mass));
   PetscFunctionReturn(0);
 }
 
 /* Keep the map of the fewest folds. */
-static PetscErrorCode SmoothUntilUnfolded(EqmSolver solver, PetscInt most_steps)
+static PetscErrorCode SmoothUntilUnfolded(EqmProblem problem, EqmIterate iterate, PetscInt most_steps)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   PetscReal *mass, *columns, *scratch;
   PetscInt64 fewest, folds;
   EqmPlace best;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(mesh->num_owned, &mass, 3 * mesh->num_owned, &columns, mesh->num_local_cells, &scratch));
-  PetscCall(EqmPlaceCreate(solver->domain, &best));
+  PetscCall(EqmPlaceCreate(problem->domain, &best));
   PetscCall(EqmMeshVertexWeights(mesh, mass));
-  PetscCall(EqmImageFolds(solver->domain, &solver->place, scratch, &fewest));
-  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &best));
-  if (fewest > 0) PetscCall(FactorFlow(solver));
+  PetscCall(EqmImageFolds(problem->domain, &iterate->place, scratch, &fewest));
+  PetscCall(EqmPlaceCopy(problem->domain, &iterate->place, &best));
+  if (fewest > 0) PetscCall(FactorFlow(problem));
   for (PetscInt k = 0; k < most_steps && fewest > 0; k++) {
-    PetscCall(Smooth(solver, mass, columns));
-    PetscCall(EqmImageFolds(solver->domain, &solver->place, scratch, &folds));
+    PetscCall(Smooth(problem, iterate, mass, columns));
+    PetscCall(EqmImageFolds(problem->domain, &iterate->place, scratch, &folds));
     if (folds >= fewest) continue;
     fewest = folds;
-    PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &best));
+    PetscCall(EqmPlaceCopy(problem->domain, &iterate->place, &best));
   }
-  PetscCall(EqmPlaceCopy(solver->domain, &best, &solver->place));
+  PetscCall(EqmPlaceCopy(problem->domain, &best, &iterate->place));
   PetscCall(EqmPlaceDestroy(&best));
   PetscCall(PetscFree3(mass, columns, scratch));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereGauss(EqmSolver solver, PetscInt steps)
+/* The steps are those of the smoothing, at most. */
+static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
   const PetscReal origin[3] = {0., 0., 0.};
 
   PetscFunctionBegin;
-  PetscCall(SumNormals(solver->mesh, solver->place.x));
+  PetscCall(SumNormals(problem->mesh, iterate->place.x));
   PetscCall(
-      EqmPlaceOntoSphere(solver->domain, origin, &solver->place)); /* of degree one, however many triangles fold */
-  if (steps == 0) PetscFunctionReturn(0);
-  PetscCall(SmoothUntilUnfolded(solver, steps));
-  PetscCall(EqmSphereUnfold(solver, &solver->unfolded_from, &solver->unfolded_to));
+      EqmPlaceOntoSphere(problem->domain, origin, &iterate->place)); /* of degree one, however many triangles fold */
+  if (options->steps == 0) PetscFunctionReturn(0);
+  PetscCall(SmoothUntilUnfolded(problem, iterate, options->steps));
+  PetscCall(EqmSphereUnfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
   PetscFunctionReturn(0);
 }
+
+const EqmStartType EqmStartSphereNormals = {EQM_STARTS_SPHERE, "normals",
+                                            "vertex normals (004 Definition 5.1): folds wherever the surface is hollow",
+                                            0, Run};
+const EqmStartType EqmStartSphereGauss = {EQM_STARTS_SPHERE, "gauss",
+                                          "normals, smoothed by heat flow for as long as they fold, and unfolding", 20,
+                                          Run};

@@ -1,6 +1,7 @@
 /* The default's first map to the sphere: the linear map, and where that is none to begin with, fixed-point steps and
    unfolding, or two hemispheres. */
-#include "method/method.h"
+#include "start/start.h"
+#include "unfold/unfold.h"
 #include <stdint.h>
 
 enum { STEPS_BETWEEN = 5 };
@@ -13,22 +14,22 @@ typedef struct {
 
 /* Unfold the present map; it is `best` from then on if it has fewer folds, or as many and is better resolved. The
    present map is left folded as it was. */
-static PetscErrorCode Consider(EqmSolver solver, EqmPlace *raw, Candidate *best)
+static PetscErrorCode Consider(EqmProblem problem, EqmIterate iterate, EqmPlace *raw, Candidate *best)
 {
   PetscInt64 from, folds;
   PetscReal smallest;
 
   PetscFunctionBegin;
-  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, raw));
-  PetscCall(EqmSphereUnfold(solver, &from, &folds));
-  PetscCall(EqmSphereSmallestImage(solver, &smallest));
+  PetscCall(EqmPlaceCopy(problem->domain, &iterate->place, raw));
+  PetscCall(EqmSphereUnfold(problem, iterate, &from, &folds));
+  PetscCall(EqmSphereSmallestImage(problem, &iterate->place, &smallest));
   if (folds < best->folds || (folds == best->folds && smallest > best->smallest)) {
-    PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &best->place));
+    PetscCall(EqmPlaceCopy(problem->domain, &iterate->place, &best->place));
     best->from = from;
     best->folds = folds;
     best->smallest = smallest;
   }
-  PetscCall(EqmPlaceCopy(solver->domain, raw, &solver->place));
+  PetscCall(EqmPlaceCopy(problem->domain, raw, &iterate->place));
   PetscFunctionReturn(0);
 }
 
@@ -42,31 +43,35 @@ static PetscBool IsGood(const Candidate *map)
 /* Fixed-point steps enlarge what the linear map makes too small, and fold here and there; unfolding mends what is not
    too bad. Take as few steps as lead to a good map. Where none does, the linear map was lost to rounding; that by
    equal weights knows no limb so thin. */
-PetscErrorCode EqmSphereGuarded(EqmSolver solver, PetscInt most_steps)
+static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
   Candidate best = {.folds = INT64_MAX};
   PetscReal *weights;
   EqmPlace raw;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(3 * solver->mesh->num_local_cells, &weights));
-  PetscCall(EqmPlaceCreate(solver->domain, &raw));
-  PetscCall(EqmPlaceCreate(solver->domain, &best.place));
-  PetscCall(EqmSphereLinear(solver, PETSC_FALSE));
-  PetscCall(Consider(solver, &raw, &best));
-  for (PetscInt k = 0; k < most_steps && !IsGood(&best); k++) {
-    PetscCall(EqmSphereFixedPointStep(solver, k, weights));
-    if ((k + 1) % STEPS_BETWEEN == 0) PetscCall(Consider(solver, &raw, &best));
+  PetscCall(PetscMalloc1(3 * problem->mesh->num_local_cells, &weights));
+  PetscCall(EqmPlaceCreate(problem->domain, &raw));
+  PetscCall(EqmPlaceCreate(problem->domain, &best.place));
+  PetscCall(EqmSphereLinear(problem, iterate, PETSC_FALSE));
+  PetscCall(Consider(problem, iterate, &raw, &best));
+  for (PetscInt k = 0; k < options->steps && !IsGood(&best); k++) {
+    PetscCall(EqmSphereFixedPointStep(problem, iterate, k, weights));
+    if ((k + 1) % STEPS_BETWEEN == 0) PetscCall(Consider(problem, iterate, &raw, &best));
   }
   if (!IsGood(&best)) {
-    PetscCall(EqmSphereTutte(solver));
-    PetscCall(Consider(solver, &raw, &best));
+    PetscCall(EqmSphereTutte(problem, iterate));
+    PetscCall(Consider(problem, iterate, &raw, &best));
   }
-  PetscCall(EqmPlaceCopy(solver->domain, &best.place, &solver->place));
-  solver->unfolded_from = best.from;
-  solver->unfolded_to = best.folds;
+  PetscCall(EqmPlaceCopy(problem->domain, &best.place, &iterate->place));
+  iterate->unfolded_from = best.from;
+  iterate->unfolded_to = best.folds;
   PetscCall(EqmPlaceDestroy(&raw));
   PetscCall(EqmPlaceDestroy(&best.place));
   PetscCall(PetscFree(weights));
   PetscFunctionReturn(0);
 }
+
+const EqmStartType EqmStartSphereGuarded = {
+    EQM_STARTS_SPHERE, "guarded",
+    "linear; where it folds or shrinks limbs to points, fixed-point steps and unfolding, or tutte", 15, Run};

@@ -4,8 +4,9 @@
    The curve is a level of the function that is one at one pole of the surface, zero at the other, and a mean of its
    neighbours elsewhere: what lies below and above is connected, as every vertex has a lower and a higher neighbour. The
    curve runs through triangles and edges, not through vertices, so no vertex is on it twice. */
-#include "method/method.h"
+#include "start/start.h"
 #include "measure/quantile.h"
+#include "unfold/unfold.h"
 #include <stdlib.h>
 
 /* A triangle that the curve runs through, from the crossing of one edge to that of another. */
@@ -16,7 +17,7 @@ typedef struct {
 } Crossing;
 
 typedef struct {
-  EqmSolver solver;
+  EqmProblem problem;
   PetscReal *input;  /* input number per local vertex */
   PetscReal *height; /* the function, per local vertex */
   PetscReal level;
@@ -27,7 +28,7 @@ typedef struct {
 /* The vertex with the largest value, ties by input number; its input number and position. */
 static PetscErrorCode Farthest(const Cut *cut, const PetscReal from[3], PetscInt *vertex, PetscReal position[3])
 {
-  const EqmMesh mesh = cut->solver->mesh;
+  const EqmMesh mesh = cut->problem->mesh;
   PetscReal best = -1., most, mine[3] = {0., 0., 0.};
   PetscInt found = -1, number, lowest;
 
@@ -51,7 +52,7 @@ static PetscErrorCode Farthest(const Cut *cut, const PetscReal from[3], PetscInt
 /* Two poles far apart, and the function between them. */
 static PetscErrorCode ComputeHeight(Cut *cut, const PetscReal *weights, signed char *group)
 {
-  const EqmMesh mesh = cut->solver->mesh;
+  const EqmMesh mesh = cut->problem->mesh;
   PetscReal sum[3] = {0., 0., 0.}, middle[3], place[2][3];
   PetscInt pole[2];
 
@@ -66,7 +67,7 @@ static PetscErrorCode ComputeHeight(Cut *cut, const PetscReal *weights, signed c
     group[v] = south || north ? EQM_GROUP_FIXED : 0;
     cut->height[v] = north ? 1. : 0.;
   }
-  PetscCall(EqmHeldSolve(cut->solver, weights, group, 1, cut->height));
+  PetscCall(EqmHeldSolve(cut->problem, weights, group, 1, cut->height));
   PetscFunctionReturn(0);
 }
 
@@ -77,7 +78,7 @@ static inline PetscBool IsBelow(const Cut *cut, PetscInt v)
 
 static PetscBool IsCut(const Cut *cut, PetscInt cell)
 {
-  const PetscInt *const v = cut->solver->mesh->cells + 3 * cell;
+  const PetscInt *const v = cut->problem->mesh->cells + 3 * cell;
   return (PetscBool)(IsBelow(cut, v[0]) != IsBelow(cut, v[1]) || IsBelow(cut, v[0]) != IsBelow(cut, v[2]));
 }
 
@@ -103,7 +104,7 @@ static Crossing *FindCrossing(const Cut *cut, PetscInt below, PetscInt above)
    ca if a is above, else from ca to ab. */
 static Crossing CrossCell(const Cut *cut, PetscInt cell)
 {
-  const EqmMesh mesh = cut->solver->mesh;
+  const EqmMesh mesh = cut->problem->mesh;
   PetscInt alone = 0, edge[2][2];
   Crossing crossing = {.angle = 0.};
 
@@ -133,7 +134,7 @@ static Crossing CrossCell(const Cut *cut, PetscInt cell)
 /* Collect the curve at the present level on every rank. */
 static PetscErrorCode CollectCurve(Cut *cut)
 {
-  const EqmMesh mesh = cut->solver->mesh;
+  const EqmMesh mesh = cut->problem->mesh;
   Crossing *mine;
   PetscMPIInt num_mine = 0, *count, *place;
   MPI_Datatype type;
@@ -184,7 +185,7 @@ enum { NUM_LEVELS = 15 };
 
 static PetscErrorCode RankLevels(const Cut *cut, PetscReal level[NUM_LEVELS], PetscReal cost[NUM_LEVELS])
 {
-  const EqmMesh mesh = cut->solver->mesh;
+  const EqmMesh mesh = cut->problem->mesh;
   PetscReal *sample, sums[2 * NUM_LEVELS] = {0.};
   EqmStatistics statistics;
 
@@ -223,7 +224,7 @@ static PetscErrorCode ChooseLevel(Cut *cut)
     closed = WalkCurve(cut);
   }
   if (!closed) {
-    EqmFail(cut->solver->comm, EQM_ERR_MESH,
+    EqmFail(cut->problem->comm, EQM_ERR_MESH,
             "-start tutte: no closed curve was found that cuts the surface in two disks; take another start");
   }
   PetscFunctionReturn(0);
@@ -233,7 +234,7 @@ static PetscErrorCode ChooseLevel(Cut *cut)
    Every inner edge is seen from two cells with half its weight. */
 static PetscErrorCode PullOfCircle(const Cut *cut, PetscReal *columns)
 {
-  const EqmMesh mesh = cut->solver->mesh;
+  const EqmMesh mesh = cut->problem->mesh;
   const PetscInt n = mesh->num_owned;
 
   PetscFunctionBegin;
@@ -253,35 +254,35 @@ static PetscErrorCode PullOfCircle(const Cut *cut, PetscReal *columns)
 }
 
 /* Both disks in one system, which the curve takes apart; then each onto its hemisphere by stereographic projection. */
-static PetscErrorCode MapHemispheres(Cut *cut, const PetscReal *weights, signed char *group)
+static PetscErrorCode MapHemispheres(Cut *cut, EqmIterate iterate, const PetscReal *weights, signed char *group)
 {
-  const EqmSolver solver = cut->solver;
-  const PetscInt n = solver->mesh->num_owned;
+  const EqmProblem problem = cut->problem;
+  const PetscInt n = problem->mesh->num_owned;
   PetscReal *columns;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2 * n, &columns));
-  for (PetscInt v = 0; v < solver->mesh->num_local; v++) group[v] = IsBelow(cut, v) ? 0 : 1;
+  for (PetscInt v = 0; v < problem->mesh->num_local; v++) group[v] = IsBelow(cut, v) ? 0 : 1;
   PetscCall(PullOfCircle(cut, columns));
-  PetscCall(EqmGroupFactor(solver, weights, group, NULL));
-  PetscCall(EqmGroupSolve(solver, 2, columns));
+  PetscCall(EqmGroupFactor(problem, weights, group, NULL));
+  PetscCall(EqmGroupSolve(problem, 2, columns));
   for (PetscInt v = 0; v < n; v++) {
     const PetscReal p = columns[v], q = columns[n + v], squared = p * p + q * q;
-    PetscReal *const x = solver->place.x + 3 * v;
+    PetscReal *const x = iterate->place.x + 3 * v;
     x[0] = 2. * p / (1. + squared);
     x[1] = 2. * q / (1. + squared);
     x[2] = (group[v] == 0 ? -1. : 1.) * (1. - squared) / (1. + squared);
   }
   PetscCall(PetscFree(columns));
-  PetscCall(EqmMeshUpdateGhosts(solver->mesh, 3, solver->place.x));
-  PetscCall(EqmSphereOrient(solver));
+  PetscCall(EqmMeshUpdateGhosts(problem->mesh, 3, iterate->place.x));
+  PetscCall(EqmSphereOrient(problem, iterate));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereTutte(EqmSolver solver)
+PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate)
 {
-  const EqmMesh mesh = solver->mesh;
-  Cut cut = {.solver = solver};
+  const EqmMesh mesh = problem->mesh;
+  Cut cut = {.problem = problem};
   PetscReal *weights;
   signed char *group;
 
@@ -290,11 +291,29 @@ PetscErrorCode EqmSphereTutte(EqmSolver solver)
                          mesh->num_local, &group));
   for (PetscInt v = 0; v < mesh->num_owned; v++) cut.input[v] = mesh->vertex_input[v];
   PetscCall(EqmMeshUpdateGhosts(mesh, 1, cut.input));
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_UNIFORM, NULL, weights));
+  PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_UNIFORM, NULL, weights));
   PetscCall(ComputeHeight(&cut, weights, group));
   PetscCall(ChooseLevel(&cut));
-  PetscCall(MapHemispheres(&cut, weights, group));
+  PetscCall(MapHemispheres(&cut, iterate, weights, group));
   PetscCall(PetscFree(cut.crossing));
   PetscCall(PetscFree4(cut.input, cut.height, weights, group));
   PetscFunctionReturn(0);
 }
+
+/* Fixed-point steps, and unfolding. */
+static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+{
+  PetscReal *weights;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * problem->mesh->num_local_cells, &weights));
+  PetscCall(EqmSphereTutte(problem, iterate));
+  for (PetscInt k = 0; k < options->steps; k++) PetscCall(EqmSphereFixedPointStep(problem, iterate, k, weights));
+  PetscCall(EqmSphereUnfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+  PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
+
+const EqmStartType EqmStartSphereTutte = {EQM_STARTS_SPHERE, "tutte",
+                                          "two hemispheres, each by equal weights, and unfolding (004 section 5.1)", 0,
+                                          Run};

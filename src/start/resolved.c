@@ -1,9 +1,7 @@
 /* Angle-preserving maps of closed surfaces with thin limbs. A leg of length l and girth g shrinks by exp(-2 pi l / g):
    triangles of area 1e-20 on the sphere are not rare, and with 16 digits no determinant of such corners has a sign that
    does not depend on the order of its computation. */
-#include "method/method.h"
-
-const PetscReal EqmSmallestImage = 4e-15;
+#include "start/start.h"
 
 /* Limbs are given a conductivity that falls towards their tips, as a power of the scale at which the conformal map has
    them, from this scale (its logarithm) down. Along a limb a harmonic map then shrinks less: with the power 2 lambda by
@@ -12,19 +10,19 @@ const PetscReal EqmSmallestImage = 4e-15;
 static const PetscReal first_scale = -6., power_step = .1;
 
 /* Logarithm of the scale at which the present map has each cell, averaged over neighbours. */
-static PetscErrorCode FindScales(EqmSolver solver, PetscReal *scale)
+static PetscErrorCode FindScales(EqmProblem problem, EqmIterate iterate, PetscReal *scale)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   PetscReal *sum;
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(2 * mesh->num_local, &sum));
-  PetscCall(EqmImageMeasureOf(solver->domain, EQM_MEASURE_HALF_DET, &solver->place, scale));
+  PetscCall(EqmImageMeasureOf(problem->domain, EQM_MEASURE_HALF_DET, &iterate->place, scale));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
     const PetscReal image = PetscMax(PetscAbsReal(scale[c]), PETSC_SQRT_MACHINE_EPSILON * EqmSmallestImage);
     for (PetscInt a = 0; a < 3; a++) {
       PetscReal *const s = sum + 2 * mesh->cells[3 * c + a];
-      s[0] += mesh->weight[c] * .5 * PetscLogReal(image / (solver->domain->target_measure * mesh->weight[c]));
+      s[0] += mesh->weight[c] * .5 * PetscLogReal(image / (problem->domain->target_measure * mesh->weight[c]));
       s[1] += mesh->weight[c];
     }
   }
@@ -40,22 +38,9 @@ static PetscErrorCode FindScales(EqmSolver solver, PetscReal *scale)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereSmallestImage(EqmSolver solver, PetscReal *smallest)
-{
-  PetscReal local = PETSC_MAX_REAL, *det;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &det));
-  PetscCall(EqmImageMeasureOf(solver->domain, EQM_MEASURE_HALF_DET, &solver->place, det));
-  for (PetscInt c = 0; c < solver->mesh->num_owned_cells; c++) local = PetscMin(local, PetscAbsReal(det[c]));
-  PetscCall(MPIU_Allreduce(&local, smallest, 1, MPIU_REAL, MPIU_MIN, solver->comm));
-  PetscCall(PetscFree(det));
-  PetscFunctionReturn(0);
-}
-
 /* Solve for one cap, then the opposite one, and so on, for as long as the Dirichlet energy of the angle weights falls:
    the linear map's faults, around its pinned triangle, are gone after a few. */
-static PetscErrorCode ImproveByCaps(EqmSolver solver)
+static PetscErrorCode ImproveByCaps(EqmProblem problem, EqmIterate iterate)
 {
   enum { MOST_STEPS = 20 };
   const PetscReal least_fall = 1e-6;
@@ -63,40 +48,52 @@ static PetscErrorCode ImproveByCaps(EqmSolver solver)
   PetscReal energy, before = PETSC_MAX_REAL;
 
   PetscFunctionBegin;
-  PetscCall(EqmAngleWeights(solver, &weights));
+  PetscCall(EqmProblemGetAngleWeights(problem, &weights));
   for (PetscInt k = 0; k < MOST_STEPS; k++) {
-    PetscCall(EqmSphereCapStep(solver, k, weights));
-    PetscCall(EqmLaplacianEnergy(solver->mesh, weights, 3, solver->place.x, &energy));
+    PetscCall(EqmSphereCapStep(problem, iterate, k, weights));
+    PetscCall(EqmLaplacianEnergy(problem->mesh, weights, 3, iterate->place.x, &energy));
     if (before - energy < least_fall * energy) break;
     before = energy;
   }
-  PetscCall(EqmMoebiusCenter(solver));
+  PetscCall(EqmIterateCenter(problem, iterate));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereResolved(EqmSolver solver)
+PetscErrorCode EqmSphereResolved(EqmProblem problem, EqmIterate iterate)
 {
   enum { FIRST_POWER = 3, MOST_POWER = 20 };
-  const PetscInt n = solver->mesh->num_local_cells;
+  const PetscInt n = problem->mesh->num_local_cells;
   const PetscReal *weights;
   PetscReal *scale, *cotangents, smallest;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(n, &scale, 3 * n, &cotangents));
-  PetscCall(EqmAngleWeights(solver, &weights));
+  PetscCall(EqmProblemGetAngleWeights(problem, &weights));
   PetscCall(PetscArraycpy(cotangents, weights, 3 * n));
-  PetscCall(EqmSphereLinear(solver, PETSC_FALSE));
-  PetscCall(ImproveByCaps(solver));
-  PetscCall(FindScales(solver, scale));
-  PetscCall(EqmSphereSmallestImage(solver, &smallest));
+  PetscCall(EqmSphereLinear(problem, iterate, PETSC_FALSE));
+  PetscCall(ImproveByCaps(problem, iterate));
+  PetscCall(FindScales(problem, iterate, scale));
+  PetscCall(EqmSphereSmallestImage(problem, &iterate->place, &smallest));
   for (PetscInt power = FIRST_POWER; power <= MOST_POWER && smallest < EqmSmallestImage; power++) {
     for (PetscInt k = 0; k < 3 * n; k++) {
       const PetscReal below = PetscMin(0., scale[k / 3] - first_scale);
-      solver->angle_weights[k] = cotangents[k] * PetscExpReal(2. * power_step * power * below);
+      problem->angle_weights[k] = cotangents[k] * PetscExpReal(2. * power_step * power * below);
     }
-    PetscCall(ImproveByCaps(solver));
-    PetscCall(EqmSphereSmallestImage(solver, &smallest));
+    PetscCall(ImproveByCaps(problem, iterate));
+    PetscCall(EqmSphereSmallestImage(problem, &iterate->place, &smallest));
   }
   PetscCall(PetscFree2(scale, cotangents));
   PetscFunctionReturn(0);
 }
+
+static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+{
+  (void)options;
+  PetscFunctionBegin;
+  PetscCall(EqmSphereResolved(problem, iterate));
+  PetscFunctionReturn(0);
+}
+
+const EqmStartType EqmStartSphereResolved = {
+    EQM_STARTS_SPHERE, "resolved",
+    "harmonic with the cotangents, cap by cap; limbs kept from shrinking below what the arithmetic resolves", 0, Run};

@@ -1,42 +1,8 @@
 /* First maps to the sphere. */
-#include "method/method.h"
+#include "start/start.h"
 #include "geometry/simplex.h"
-#include "measure/quantile.h"
-
-/* Points of the plane (two reals per vertex) and of the sphere, seen from the pole `up` = +1 (north) or -1. */
-static void ToPlane(PetscInt n, PetscReal up, const PetscReal *x, PetscReal *z)
-{
-  for (PetscInt v = 0; v < n; v++) {
-    const PetscReal height =
-        PetscMax(1. - up * x[3 * v + 2], PETSC_MACHINE_EPSILON); /* a vertex at the pole stays finite */
-    for (PetscInt k = 0; k < 2; k++) z[2 * v + k] = x[3 * v + k] / height;
-  }
-}
-
-static void ToSphere(PetscInt n, PetscReal up, const PetscReal *z, PetscReal *x)
-{
-  for (PetscInt v = 0; v < n; v++) {
-    const PetscReal squared = z[2 * v] * z[2 * v] + z[2 * v + 1] * z[2 * v + 1];
-    for (PetscInt k = 0; k < 2; k++) x[3 * v + k] = 2. * z[2 * v + k] / (1. + squared);
-    x[3 * v + 2] = up * (squared - 1.) / (squared + 1.);
-  }
-}
-
-/* Divide by the median modulus: half of the vertices on each hemisphere. */
-static PetscErrorCode DivideByMedian(EqmMesh mesh, PetscReal *z)
-{
-  PetscReal *modulus;
-  EqmStatistics statistics;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(mesh->num_owned, &modulus));
-  for (PetscInt v = 0; v < mesh->num_owned; v++)
-    modulus[v] = PetscSqrtReal(z[2 * v] * z[2 * v] + z[2 * v + 1] * z[2 * v + 1]);
-  PetscCall(EqmStatisticsOf(mesh->comm, mesh->num_owned, modulus, &statistics));
-  PetscCall(PetscFree(modulus));
-  for (PetscInt k = 0; k < 2 * mesh->num_local; k++) z[k] /= statistics.p50;
-  PetscFunctionReturn(0);
-}
+#include "problem/objective.h"
+#include "unfold/unfold.h"
 
 /* Subtract the vertex mean. */
 static PetscErrorCode Center(EqmMesh mesh, PetscReal *z)
@@ -47,21 +13,6 @@ static PetscErrorCode Center(EqmMesh mesh, PetscReal *z)
   for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) sum[k % 2] += z[k];
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (PetscInt k = 0; k < 2 * mesh->num_local; k++) z[k] -= sum[k % 2] / mesh->num_vertices;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmSphereOrient(EqmSolver solver)
-{
-  const EqmMesh mesh = solver->mesh;
-  PetscReal *det;
-  PetscInt64 folds;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(mesh->num_local_cells, &det));
-  PetscCall(EqmImageFolds(solver->domain, &solver->place, det, &folds));
-  PetscCall(PetscFree(det));
-  if (2 * folds <= mesh->num_cells) PetscFunctionReturn(0);
-  for (PetscInt v = 0; v < mesh->num_local; v++) solver->place.x[3 * v] *= -1.;
   PetscFunctionReturn(0);
 }
 
@@ -126,9 +77,9 @@ static void PinnedPlaces(const PetscReal position[9], PetscReal pinned[6])
 }
 
 /* The places of the triangle's corners held, the others harmonic. */
-static PetscErrorCode SolvePinned(EqmSolver solver, const PetscInt corner[3], const PetscReal pinned[6], PetscReal *z)
+static PetscErrorCode SolvePinned(EqmProblem problem, const PetscInt corner[3], const PetscReal pinned[6], PetscReal *z)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   const PetscReal *weights;
   signed char *group;
 
@@ -144,15 +95,15 @@ static PetscErrorCode SolvePinned(EqmSolver solver, const PetscInt corner[3], co
       z[2 * v + 1] = pinned[2 * a + 1];
     }
   }
-  PetscCall(EqmAngleWeights(solver, &weights));
-  PetscCall(EqmHeldSolve(solver, weights, group, 2, z));
+  PetscCall(EqmProblemGetAngleWeights(problem, &weights));
+  PetscCall(EqmHeldSolve(problem, weights, group, 2, z));
   PetscCall(PetscFree(group));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereLinear(EqmSolver solver, PetscBool dipole)
+PetscErrorCode EqmSphereLinear(EqmProblem problem, EqmIterate iterate, PetscBool dipole)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   PetscInt corner[3];
   PetscReal position[9], pinned[6], *z;
 
@@ -161,41 +112,75 @@ PetscErrorCode EqmSphereLinear(EqmSolver solver, PetscBool dipole)
   PinnedPlaces(position, pinned);
   PetscCall(PetscMalloc1(2 * mesh->num_local, &z));
   if (dipole)
-    PetscCall(EqmDipoleSolve(solver, corner, pinned, z));
+    PetscCall(EqmDipoleSolve(problem, &iterate->place, corner, pinned, z));
   else
-    PetscCall(SolvePinned(solver, corner, pinned, z));
+    PetscCall(SolvePinned(problem, corner, pinned, z));
   PetscCall(Center(mesh, z));
-  PetscCall(DivideByMedian(mesh, z));
-  ToSphere(mesh->num_local, 1., z, solver->place.x);
-  PetscCall(EqmSphereOrient(solver));
+  PetscCall(EqmDivideByMedian(mesh, z));
+  EqmPlaneToSphere(mesh->num_local, 1., z, iterate->place.x);
+  PetscCall(EqmSphereOrient(problem, iterate));
   PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereCapStep(EqmSolver solver, PetscInt step, const PetscReal *weights)
+/* ---- the linear map, and what begins with it */
+
+static PetscErrorCode RunLinear(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
-  const EqmMesh mesh = solver->mesh;
-  const PetscReal up = step % 2 ? 1. : -1., radius = 1.2;
-  PetscReal *z;
-  signed char *group;
+  PetscReal *weights;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(2 * mesh->num_local, &z, mesh->num_local, &group));
-  ToPlane(mesh->num_local, up, solver->place.x, z);
-  for (PetscInt v = 0; v < mesh->num_local; v++) {
-    group[v] = z[2 * v] * z[2 * v] + z[2 * v + 1] * z[2 * v + 1] < radius * radius ? 0 : EQM_GROUP_FIXED;
+  PetscCall(PetscMalloc1(3 * problem->mesh->num_local_cells, &weights));
+  PetscCall(EqmSphereLinear(problem, iterate, PETSC_FALSE));
+  for (PetscInt k = 0; k < options->steps; k++) PetscCall(EqmSphereFixedPointStep(problem, iterate, k, weights));
+  PetscCall(PetscFree(weights));
+  PetscFunctionReturn(0);
+}
+
+/* Fixed-point steps until the energy rises; the map before the rise, unfolded. */
+static PetscErrorCode RunDescending(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+{
+  PetscReal *weights, before;
+  EqmPlace last;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * problem->mesh->num_local_cells, &weights));
+  PetscCall(EqmPlaceCreate(problem->domain, &last));
+  PetscCall(EqmSphereLinear(problem, iterate, PETSC_FALSE));
+  PetscCall(EqmIterateUpdate(problem, iterate));
+  for (PetscInt k = 0; k < options->steps; k++) {
+    before = iterate->totals.energy;
+    PetscCall(EqmPlaceCopy(problem->domain, &iterate->place, &last));
+    PetscCall(EqmSphereFixedPointStep(problem, iterate, k, weights));
+    PetscCall(EqmIterateUpdate(problem, iterate));
+    if (iterate->totals.energy < before) continue;
+    PetscCall(EqmPlaceCopy(problem->domain, &last, &iterate->place));
+    break;
   }
-  PetscCall(EqmHeldSolve(solver, weights, group, 2, z));
-  PetscCall(DivideByMedian(mesh, z));
-  ToSphere(mesh->num_local, up, z, solver->place.x);
-  PetscCall(PetscFree2(z, group));
+  PetscCall(EqmSphereUnfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+  PetscCall(EqmPlaceDestroy(&last));
+  PetscCall(PetscFree(weights));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereFixedPointStep(EqmSolver solver, PetscInt step, PetscReal *weights)
+static PetscErrorCode RunConformal(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
+  (void)options;
   PetscFunctionBegin;
-  PetscCall(EqmLaplacianWeights(solver->domain, EQM_LAPLACIAN_STRETCH, &solver->place, weights));
-  PetscCall(EqmSphereCapStep(solver, step, weights));
+  PetscCall(EqmSphereLinear(problem, iterate, problem->objective->fixed_metric));
+  PetscCall(EqmIterateCenter(problem, iterate));
   PetscFunctionReturn(0);
 }
+
+const EqmStartType EqmStartSphereLinearType = {EQM_STARTS_SPHERE, "linear",
+                                               "Laplacian linearisation: one triangle pinned, the rest conformal", 0,
+                                               RunLinear};
+const EqmStartType EqmStartSphereFixedPoint = {EQM_STARTS_SPHERE, "fixed-point",
+                                               "linear, then fixed-point steps (001 Algorithm 2)", 10, RunLinear};
+const EqmStartType EqmStartSphereDescending = {
+    EQM_STARTS_SPHERE, "descending",
+    "linear, then fixed-point steps for as long as the energy falls, seven at most (001 section 6.3)", 7,
+    RunDescending};
+const EqmStartType EqmStartSphereConformal = {EQM_STARTS_SPHERE, "conformal",
+                                              "linear, then the Mobius map that brings its mass centre to the sphere's",
+                                              0, RunConformal};

@@ -1,6 +1,8 @@
 /* Folds of maps to the ball: the energy with the barrier of barrier.c, first softened until nothing is folded, then as
    a wall of less and less weight, which brings the energy down again. */
-#include "unfold/barrier.h"
+#include "unfold/unfold.h"
+#include "method/method.h"
+#include "problem/barrier.h"
 
 enum { MOST_ROUNDS = 40, ROUND_STEPS = 15, SETTLE_ROUNDS = 3, SETTLE_STEPS = 60 };
 static const PetscReal first_weight = 1e-2, shape_share = .1; /* lambda, and sigma in proportion to it */
@@ -16,37 +18,38 @@ typedef struct {
 
 /* Descend by so many steps of L-BFGS with the barrier as it is, with the pattern of the first time; the objective
    before and after. */
-static PetscErrorCode Descend(EqmSolver solver, PetscInt most_steps, PetscReal *before, PetscReal *after)
+static PetscErrorCode Descend(EqmProblem problem, EqmIterate iterate, EqmMethod lbfgs, PetscInt most_steps,
+                              PetscReal *before, PetscReal *after)
 {
-  const PetscInt iterations = solver->iteration;
+  const PetscInt number = iterate->number;
   EqmStep outcome = EQM_STEP_TAKEN;
 
   PetscFunctionBegin;
-  solver->barrier->shape_weight = shape_share * solver->barrier->weight;
-  solver->iteration = 0; /* the method counts from here when its metric is due */
-  if (solver->data)
-    PetscCall(EqmLbfgsRestart(solver));
+  problem->barrier->shape_weight = shape_share * problem->barrier->weight;
+  iterate->number = 0; /* the method counts from here when its metric is due */
+  if (lbfgs->is_set_up)
+    PetscCall(EqmLbfgsRestart(lbfgs, iterate));
   else
-    PetscCall(EqmMethodLbfgs.set_up(solver));
-  *before = solver->objective;
-  while (solver->iteration < most_steps && outcome == EQM_STEP_TAKEN) {
-    PetscCall(EqmMethodLbfgs.step(solver, &outcome));
-    solver->iteration++;
+    PetscCall(EqmMethodSetUp(lbfgs, problem, iterate));
+  *before = iterate->objective;
+  while (iterate->number < most_steps && outcome == EQM_STEP_TAKEN) {
+    PetscCall(EqmMethodStep(lbfgs, iterate, &outcome));
+    iterate->number++;
   }
-  *after = solver->objective;
-  solver->iteration = iterations;
+  *after = iterate->objective;
+  iterate->number = number;
   PetscFunctionReturn(0);
 }
 
-/* Look at the present map, and keep it in `best` if it is better. */
-static PetscErrorCode Compare(EqmSolver solver, Found *best, PetscInt64 *folds, PetscReal *least)
+/* Inspect the present map, and keep it in `best` if it is better. */
+static PetscErrorCode Compare(EqmProblem problem, EqmIterate iterate, Found *best, PetscInt64 *folds, PetscReal *least)
 {
   PetscFunctionBegin;
-  PetscCall(EqmBarrierLook(solver, solver->barrier, least, folds));
-  if (*folds > best->folds || (*folds == best->folds && solver->totals.energy >= best->energy)) PetscFunctionReturn(0);
+  PetscCall(EqmBarrierInspect(problem, iterate, least, folds));
+  if (*folds > best->folds || (*folds == best->folds && iterate->totals.energy >= best->energy)) PetscFunctionReturn(0);
   best->folds = *folds;
-  best->energy = solver->totals.energy;
-  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &best->place));
+  best->energy = iterate->totals.energy;
+  PetscCall(EqmPlaceCopy(problem->domain, &iterate->place, &best->place));
   PetscFunctionReturn(0);
 }
 
@@ -61,40 +64,54 @@ static PetscReal NextEpsilon(PetscReal epsilon, PetscReal least, PetscReal befor
   return least < level ? PetscMax(wall, 2. * PetscSqrtReal(level * (level - least))) : wall;
 }
 
-PetscErrorCode EqmBallUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after)
+/* L-BFGS as it is for the ball, and as the options have it. */
+static PetscErrorCode CreateLbfgs(EqmProblem problem, EqmMethod *lbfgs)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMethodCreate(problem->comm, "lbfgs", lbfgs));
+  PetscCall(EqmLbfgsSetMemory(*lbfgs, 20));
+  PetscCall(EqmLbfgsSetLineSearch(*lbfgs, EQM_SEARCH_WOLFE));
+  PetscOptionsBegin(problem->comm, problem->prefix, "Unfolding", NULL);
+  PetscCall(EqmMethodSetFromOptions(*lbfgs, PetscOptionsObject));
+  PetscOptionsEnd();
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before, PetscInt64 *after)
 {
   Found best = {.folds = PETSC_MAX_INT};
   PetscInt64 folds;
   PetscReal least, start = 1., end = 1.;
-  EqmBarrier barrier;
-  const PetscBool at_end = (PetscBool)(solver->num_history > 0); /* a start is not cut short: it would be another */
   PetscBool stop = PETSC_FALSE;
+  EqmBarrier barrier;
+  EqmMethod lbfgs;
 
   PetscFunctionBegin;
-  *before = solver->totals.folds;
-  PetscCall(EqmPlaceCreate(solver->domain, &best.place));
-  PetscCall(EqmBarrierCreate(solver, &barrier));
-  solver->barrier = barrier;
+  *before = iterate->totals.folds;
+  PetscCall(CreateLbfgs(problem, &lbfgs));
+  PetscCall(EqmPlaceCreate(problem->domain, &best.place));
+  PetscCall(EqmBarrierCreate(problem, &iterate->place, &barrier));
+  problem->barrier = barrier;
   barrier->weight = first_weight;
-  PetscCall(Compare(solver, &best, &folds, &least));
+  PetscCall(Compare(problem, iterate, &best, &folds, &least));
   barrier->epsilon = PetscMax(1., -.2 * least);
   for (PetscInt round = 0; round < MOST_ROUNDS && folds > 0 && !stop; round++) {
-    PetscCall(Descend(solver, ROUND_STEPS, &start, &end));
-    PetscCall(Compare(solver, &best, &folds, &least));
+    PetscCall(Descend(problem, iterate, lbfgs, ROUND_STEPS, &start, &end));
+    PetscCall(Compare(problem, iterate, &best, &folds, &least));
     barrier->epsilon = NextEpsilon(barrier->epsilon, least, start, end);
-    if (at_end) PetscCall(EqmCheckpointAskedToStop(solver, &stop));
+    PetscCall(EqmProblemStopRequested(problem, &stop));
   }
   barrier->epsilon = wall;
   for (PetscInt round = 0; round < SETTLE_ROUNDS && folds == 0; round++) {
     barrier->weight *= settle_factor;
-    PetscCall(Descend(solver, SETTLE_STEPS, &start, &end));
-    PetscCall(Compare(solver, &best, &folds, &least));
+    PetscCall(Descend(problem, iterate, lbfgs, SETTLE_STEPS, &start, &end));
+    PetscCall(Compare(problem, iterate, &best, &folds, &least));
   }
-  PetscCall(EqmMethodLbfgs.destroy(solver));
-  PetscCall(EqmBarrierDestroy(&solver->barrier));
-  PetscCall(EqmPlaceCopy(solver->domain, &best.place, &solver->place));
+  PetscCall(EqmMethodDestroy(&lbfgs));
+  PetscCall(EqmBarrierDestroy(&problem->barrier));
+  PetscCall(EqmPlaceCopy(problem->domain, &best.place, &iterate->place));
   PetscCall(EqmPlaceDestroy(&best.place));
-  PetscCall(EqmSolverLook(solver));
-  *after = solver->totals.folds;
+  PetscCall(EqmIterateUpdate(problem, iterate));
+  *after = iterate->totals.folds;
   PetscFunctionReturn(0);
 }

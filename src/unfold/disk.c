@@ -3,7 +3,7 @@
    are positive, and what is harmonic for them folds nowhere, as the boundary is strictly convex (Tutte 1963, Floater
    1997). Angles pay for it: only edges around folds are changed, then those around the folds that are left, and at the
    last all of them. */
-#include "method/method.h"
+#include "unfold/unfold.h"
 
 enum { MOST_ROUNDS = 30 };
 static const PetscReal least_weight = 1e-2; /* of an edge; between equilateral triangles it is 1/sqrt(3) */
@@ -62,48 +62,48 @@ static PetscErrorCode Mark(EqmMesh mesh, const PetscReal *image, PetscBool every
 }
 
 /* Round by round from the present map, whose folds `after` counts; the best map goes to `best`. */
-static PetscErrorCode Straighten(EqmSolver solver, Unfold *u, EqmPlace *best, PetscInt64 *after)
+static PetscErrorCode Straighten(EqmProblem problem, EqmIterate iterate, Unfold *u, EqmPlace *best, PetscInt64 *after)
 {
   EqmPlace to;
 
   PetscFunctionBegin;
-  PetscCall(EqmPlaceCreate(solver->domain, &to));
+  PetscCall(EqmPlaceCreate(problem->domain, &to));
   for (PetscInt round = 1; round <= MOST_ROUNDS && (*after) > 0; round++) {
     PetscInt64 folds;
-    PetscCall(Mark(solver->mesh, solver->image, (PetscBool)(round == MOST_ROUNDS), u->marked));
-    MakePositive(solver->mesh, u);
-    PetscCall(EqmHarmonicMap(solver, u->weights, &solver->place, &to));
-    PetscCall(EqmImageFolds(solver->domain, &to, solver->image, &folds));
+    PetscCall(Mark(problem->mesh, iterate->image, (PetscBool)(round == MOST_ROUNDS), u->marked));
+    MakePositive(problem->mesh, u);
+    PetscCall(EqmHarmonicMap(problem, u->weights, &iterate->place, &to));
+    PetscCall(EqmImageFolds(problem->domain, &to, iterate->image, &folds));
     if (folds >= *after) continue;
     *after = folds;
-    PetscCall(EqmPlaceCopy(solver->domain, &to, best));
+    PetscCall(EqmPlaceCopy(problem->domain, &to, best));
   }
   PetscCall(EqmPlaceDestroy(&to));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmDiskUnfold(EqmSolver solver, PetscInt64 *before, PetscInt64 *after)
+PetscErrorCode EqmDiskUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before, PetscInt64 *after)
 {
-  const EqmMesh mesh = solver->mesh;
+  const EqmMesh mesh = problem->mesh;
   const PetscReal *angle_weights;
   EqmPlace best;
   Unfold u;
 
   PetscFunctionBegin;
-  PetscCall(EqmAngleWeights(solver, &angle_weights));
+  PetscCall(EqmProblemGetAngleWeights(problem, &angle_weights));
   PetscCall(PetscMalloc2(3 * mesh->num_local_cells, &u.side, 3 * mesh->num_local_cells, &u.weights));
   PetscCall(PetscCalloc1(mesh->num_local, &u.marked));
   PetscCall(PetscArraycpy(u.weights, angle_weights, 3 * mesh->num_local_cells));
   SortSides(mesh, u.side);
-  PetscCall(EqmPlaceCreate(solver->domain, &best));
-  PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &best));
-  PetscCall(EqmImageFolds(solver->domain, &best, solver->image, before));
+  PetscCall(EqmPlaceCreate(problem->domain, &best));
+  PetscCall(EqmPlaceCopy(problem->domain, &iterate->place, &best));
+  PetscCall(EqmImageFolds(problem->domain, &best, iterate->image, before));
   *after = *before;
-  PetscCall(Straighten(solver, &u, &best, after));
-  PetscCall(EqmPlaceCopy(solver->domain, &best, &solver->place));
+  PetscCall(Straighten(problem, iterate, &u, &best, after));
+  PetscCall(EqmPlaceCopy(problem->domain, &best, &iterate->place));
   PetscCall(EqmPlaceDestroy(&best));
   PetscCall(PetscFree2(u.side, u.weights));
   PetscCall(PetscFree(u.marked));
-  PetscCall(EqmSolverLook(solver));
+  PetscCall(EqmIterateUpdate(problem, iterate));
   PetscFunctionReturn(0);
 }

@@ -111,9 +111,9 @@ static PetscErrorCode TestFixedPoint(const char *shape)
   PetscCall(TestMeshCreate(PETSC_COMM_SELF, shape, 120, 2, &test));
   PetscCall(TestSolve(test.mesh, "disk", "-method fixed-point -start harmonic -max_it 0", &start));
   PetscCall(TestSolve(test.mesh, "disk", "-method fixed-point -start harmonic -max_it 3 -energy_rtol 0", &solver));
-  for (PetscInt k = 0; k < 3; k++) PetscCall(DenseFixedPointStep(test.mesh, start->place.x));
+  for (PetscInt k = 0; k < 3; k++) PetscCall(DenseFixedPointStep(test.mesh, start->iterate->place.x));
   for (PetscInt k = 0; k < 2 * test.mesh->num_vertices; k++)
-    CHECK_CLOSE(solver->place.x[k], start->place.x[k], 1e-9, 1.);
+    CHECK_CLOSE(solver->iterate->place.x[k], start->iterate->place.x[k], 1e-9, 1.);
   PetscCall(EqmSolverDestroy(&start));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
@@ -133,18 +133,18 @@ static PetscErrorCode TestSquareFixedPoint(void)
   PetscCall(TestSolve(mesh, "square", "-method fixed-point -start harmonic -max_it 1 -energy_rtol 0", &before));
   PetscCall(TestSolve(mesh, "square", "-method fixed-point -start harmonic -max_it 2 -energy_rtol 0", &after));
   PetscCall(PetscMalloc2(3 * mesh->num_local_cells, &weights, 2 * mesh->num_owned, &residual));
-  PetscCall(EqmLaplacianWeights(before->domain, EQM_LAPLACIAN_STRETCH, &before->place, weights));
-  PetscCall(EqmLaplacianApply(mesh, weights, 2, after->place.x, residual));
+  PetscCall(EqmLaplacianWeights(before->problem->domain, EQM_LAPLACIAN_STRETCH, &before->iterate->place, weights));
+  PetscCall(EqmLaplacianApply(mesh, weights, 2, after->iterate->place.x, residual));
   for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) scale = PetscMax(scale, PetscAbsReal(residual[k]));
   scale = TestMax(mesh->comm, scale); /* the forces that hold the sides in place */
   for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) {
-    const EqmVertexKind kind = (EqmVertexKind)before->domain->kind[k / 2];
+    const EqmVertexKind kind = (EqmVertexKind)before->problem->domain->kind[k / 2];
     const PetscBool free =
         (PetscBool)(kind == EQM_VERTEX_FREE || kind == (k % 2 ? EQM_VERTEX_SIDE_Y : EQM_VERTEX_SIDE_X));
     if (free)
       CHECK_CLOSE(residual[k], 0., 1e-11, scale);
     else
-      CHECK(after->place.x[k] == before->place.x[k], "a side's vertex has left it");
+      CHECK(after->iterate->place.x[k] == before->iterate->place.x[k], "a side's vertex has left it");
   }
   PetscCall(PetscFree2(weights, residual));
   PetscCall(EqmSolverDestroy(&before));
@@ -171,7 +171,7 @@ typedef struct {
 static PetscErrorCode ApplyM(Ncg *ncg, PetscBool inverse, Vec x, Vec y)
 {
   const EqmMesh mesh = ncg->solver->mesh;
-  const EqmDomain domain = ncg->solver->domain;
+  const EqmDomain domain = ncg->solver->problem->domain;
   const PetscInt n = mesh->num_owned;
   const PetscScalar *from;
   PetscScalar *to;
@@ -183,7 +183,7 @@ static PetscErrorCode ApplyM(Ncg *ncg, PetscBool inverse, Vec x, Vec y)
         k / n < domain->dof_count[k % n] ? from[domain->dof_start[k % n] - domain->dof_first + k / n] : 0.;
   PetscCall(VecRestoreArrayRead(x, &from));
   if (inverse) {
-    PetscCall(EqmGroupSolve(ncg->solver, 2, ncg->columns));
+    PetscCall(EqmGroupSolve(ncg->solver->problem, 2, ncg->columns));
   } else {
     for (signed char group = 0; group < 2; group++) { /* interior and boundary do not see each other */
       for (PetscInt k = 0; k < 2 * n; k++)
@@ -211,13 +211,14 @@ static PetscErrorCode NcgBegin(EqmMesh mesh, Ncg *ncg)
   PetscCall(PetscMalloc6(3 * mesh->num_local_cells, &ncg->weights, 2 * mesh->num_owned, &ncg->columns,
                          mesh->num_local_cells, &ncg->a, 2 * mesh->num_local, &ncg->local, 2 * mesh->num_owned,
                          &ncg->applied, mesh->num_local, &ncg->group));
-  PetscCall(EqmDomainCreateVec(ncg->solver->domain, &ncg->g));
+  PetscCall(EqmDomainCreateVec(ncg->solver->problem->domain, &ncg->g));
   PetscCall(VecDuplicate(ncg->g, &ncg->h));
   PetscCall(VecDuplicate(ncg->g, &ncg->p));
   PetscCall(VecDuplicate(ncg->g, &ncg->product));
   for (PetscInt v = 0; v < mesh->num_local; v++) ncg->group[v] = mesh->on_boundary[v] ? 1 : 0;
-  PetscCall(EqmLaplacianWeights(ncg->solver->domain, EQM_LAPLACIAN_STRETCH, &ncg->solver->place, ncg->weights));
-  PetscCall(EqmGroupFactor(ncg->solver, ncg->weights, ncg->group, NULL));
+  PetscCall(EqmLaplacianWeights(ncg->solver->problem->domain, EQM_LAPLACIAN_STRETCH, &ncg->solver->iterate->place,
+                                ncg->weights));
+  PetscCall(EqmGroupFactor(ncg->solver->problem, ncg->weights, ncg->group, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -240,9 +241,9 @@ static PetscErrorCode ParabolaStep(Ncg *ncg, PetscReal energy, PetscReal slope, 
   EqmPlace to;
 
   PetscFunctionBegin;
-  PetscCall(EqmPlaceCreate(ncg->solver->domain, &to));
-  PetscCall(EqmDomainMove(ncg->solver->domain, &ncg->solver->place, previous, ncg->p, &to));
-  PetscCall(EqmAuthalicEnergy(ncg->solver->domain, &to, ncg->a, &trial, NULL));
+  PetscCall(EqmPlaceCreate(ncg->solver->problem->domain, &to));
+  PetscCall(EqmDomainMove(ncg->solver->problem->domain, &ncg->solver->iterate->place, previous, ncg->p, &to));
+  PetscCall(EqmAuthalicEnergy(ncg->solver->problem->domain, &to, ncg->a, &trial, NULL));
   *alpha = -previous * previous * slope / (2. * (trial - energy - previous * slope));
   PetscCall(EqmPlaceDestroy(&to));
   PetscFunctionReturn(0);
@@ -251,8 +252,8 @@ static PetscErrorCode ParabolaStep(Ncg *ncg, PetscReal energy, PetscReal slope, 
 /* Lines 10-23, as printed. alpha_0 = 2 is meant for a surface of area pi; with area one that is 2 pi. */
 static PetscErrorCode NcgRun(Ncg *ncg)
 {
-  const EqmDomain domain = ncg->solver->domain;
-  EqmPlace *const place = &ncg->solver->place;
+  const EqmDomain domain = ncg->solver->problem->domain;
+  EqmPlace *const place = &ncg->solver->iterate->place;
   PetscReal alpha = 2. * PETSC_PI, lambda, product;
 
   PetscFunctionBegin;
@@ -283,8 +284,8 @@ static PetscErrorCode NcgRun(Ncg *ncg)
    is so short that the slope stays. */
 static PetscErrorCode CheckWolfe(Ncg *ncg)
 {
-  const EqmDomain domain = ncg->solver->domain;
-  EqmPlace *const place = &ncg->solver->place;
+  const EqmDomain domain = ncg->solver->problem->domain;
+  EqmPlace *const place = &ncg->solver->iterate->place;
   PetscReal energy, slope, slope_after, alpha;
 
   PetscFunctionBegin;

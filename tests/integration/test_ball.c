@@ -1,5 +1,6 @@
 /* Solids to the ball: every method, alone and together, turned inputs, the mending of folds. */
 #include "support/testing.h"
+#include "unfold/unfold.h"
 
 /* The default reaches a map without folds; Newton's method a minimum that the others do not go below. */
 static PetscErrorCode TestMethods(void)
@@ -14,20 +15,20 @@ static PetscErrorCode TestMethods(void)
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "blob", 700, 2, &test));
   PetscCall(TestSolve(test.mesh, "ball", "-method newton", &solver));
   CHECK(solver->status == EQM_STATUS_CONVERGED, "newton: %s", solver->message);
-  CHECK(solver->totals.folds == 0, "newton: %d folds", (int)solver->totals.folds);
-  CHECK(solver->gradient_norm < 1e-6, "newton: gradient %g", (double)solver->gradient_norm);
-  minimum = solver->totals.energy;
+  CHECK(solver->iterate->totals.folds == 0, "newton: %d folds", (int)solver->iterate->totals.folds);
+  CHECK(solver->iterate->gradient_norm < 1e-6, "newton: gradient %g", (double)solver->iterate->gradient_norm);
+  minimum = solver->iterate->totals.energy;
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestSolve(test.mesh, "ball", "-method newton -anisotropic_scaling 0", &solver));
-  CHECK_CLOSE(solver->totals.energy, minimum, 1e-6, minimum); /* one minimum, whatever the start */
+  CHECK_CLOSE(solver->iterate->totals.energy, minimum, 1e-6, minimum); /* one minimum, whatever the start */
   PetscCall(EqmSolverDestroy(&solver));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(options); k++) {
     PetscCall(TestSolve(test.mesh, "ball", options[k], &solver));
-    CHECK(solver->totals.folds == 0, "%s: %d folds", options[k], (int)solver->totals.folds);
-    CHECK(solver->totals.energy > (1. - 1e-9) * minimum, "%s: energy %g below the minimum %g", options[k],
-          (double)solver->totals.energy, (double)minimum);
-    CHECK(solver->totals.energy < (most[k] > 0. ? most[k] * minimum : solver->history[0].energy), "%s: energy %g",
-          options[k], (double)solver->totals.energy);
+    CHECK(solver->iterate->totals.folds == 0, "%s: %d folds", options[k], (int)solver->iterate->totals.folds);
+    CHECK(solver->iterate->totals.energy > (1. - 1e-9) * minimum, "%s: energy %g below the minimum %g", options[k],
+          (double)solver->iterate->totals.energy, (double)minimum);
+    CHECK(solver->iterate->totals.energy < (most[k] > 0. ? most[k] * minimum : solver->history[0].energy),
+          "%s: energy %g", options[k], (double)solver->iterate->totals.energy);
     PetscCall(EqmSolverDestroy(&solver));
   }
   PetscCall(TestMeshDestroy(&test));
@@ -83,7 +84,7 @@ static PetscErrorCode TestRanks(void)
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "blob", 600, 1, &together));
   PetscCall(TestSolve(alone.mesh, "ball", "-energy_rtol 1e-8", &one));
   PetscCall(TestSolve(together.mesh, "ball", "-energy_rtol 1e-8", &all));
-  CHECK_CLOSE(all->totals.energy, one->totals.energy, 1e-4, one->totals.energy);
+  CHECK_CLOSE(all->iterate->totals.energy, one->iterate->totals.energy, 1e-4, one->iterate->totals.energy);
   PetscCall(EqmSolverDestroy(&one));
   PetscCall(EqmSolverDestroy(&all));
   PetscCall(TestMeshDestroy(&alone));
@@ -103,12 +104,12 @@ static PetscErrorCode TestUnfolding(void)
   PetscCall(TestSolve(test.mesh, "ball", "-max_it 20", &solver));
   for (PetscInt v = 0; v < test.mesh->num_owned; v++) {
     if (test.mesh->vertex_input[v] % 40 || test.mesh->on_boundary[v]) continue;
-    for (PetscInt k = 0; k < 3; k++) solver->place.x[3 * v + k] += .2;
+    for (PetscInt k = 0; k < 3; k++) solver->iterate->place.x[3 * v + k] += .2;
   }
-  PetscCall(EqmMeshUpdateGhosts(test.mesh, 3, solver->place.x));
-  PetscCall(EqmSolverLook(solver));
-  CHECK(solver->totals.folds > 0, "nothing is folded");
-  PetscCall(EqmBallUnfold(solver, &before, &after));
+  PetscCall(EqmMeshUpdateGhosts(test.mesh, 3, solver->iterate->place.x));
+  PetscCall(EqmIterateUpdate(solver->problem, solver->iterate));
+  CHECK(solver->iterate->totals.folds > 0, "nothing is folded");
+  PetscCall(EqmBallUnfold(solver->problem, solver->iterate, &before, &after));
   CHECK(before > 0 && after == 0, "%d folds, %d afterwards", (int)before, (int)after);
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));

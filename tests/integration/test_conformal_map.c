@@ -44,18 +44,18 @@ static PetscErrorCode TestSphereItself(void)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "sphere", 1000, 1, &test));
   PetscCall(TestSolve(test.mesh, "conformal", "", &solver));
-  PetscCall(EqmVertexMass(solver, &mass));
-  PetscCall(EqmPlaceMassCenter(solver->domain, mass, &solver->place, center));
+  PetscCall(EqmProblemGetVertexMass(solver->problem, &mass));
+  PetscCall(EqmPlaceMassCenter(solver->problem->domain, mass, &solver->iterate->place, center));
   CHECK_CLOSE(PetscSqrtReal(EqmDot3(center, center)), 0., 1e-12, 1.);
-  PetscCall(EqmPlaceCreate(solver->domain, &itself));
+  PetscCall(EqmPlaceCreate(solver->problem->domain, &itself));
   PetscCall(PetscArraycpy(itself.x, test.mesh->position, 3 * test.mesh->num_local));
-  PetscCall(EqmPlaceCenter(solver->domain, mass, &itself, &offset));
+  PetscCall(EqmPlaceCenter(solver->problem->domain, mass, &itself, &offset));
   for (PetscInt k = 1; k < test.mesh->num_local; k++) {
-    const PetscReal *const x = solver->place.x, *const y = itself.x;
+    const PetscReal *const x = solver->iterate->place.x, *const y = itself.x;
     farthest = PetscMax(farthest, PetscAbsReal(Distance(x, x + 3 * k) - Distance(y, y + 3 * k)));
   }
   CHECK(farthest < 1e-4, "distances differ by %g", (double)farthest);
-  CHECK_CLOSE(solver->totals.energy, solver->totals.total, 1e-6, 1.);
+  CHECK_CLOSE(solver->iterate->totals.energy, solver->iterate->totals.total, 1e-6, 1.);
   PetscCall(EqmPlaceDestroy(&itself));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
@@ -76,7 +76,7 @@ static PetscErrorCode TestSameMap(const char *options, PetscReal tolerance)
   CHECK(solver[1]->status == EQM_STATUS_CONVERGED, "%s: status %d: %s", options, (int)solver[1]->status,
         solver[1]->message);
   for (PetscInt k = 1; k < test.mesh->num_local; k++) {
-    const PetscReal *const x = solver[0]->place.x, *const y = solver[1]->place.x;
+    const PetscReal *const x = solver[0]->iterate->place.x, *const y = solver[1]->iterate->place.x;
     farthest = PetscMax(farthest, PetscAbsReal(Distance(x, x + 3 * k) - Distance(y, y + 3 * k)));
   }
   CHECK(farthest < tolerance, "%s: distances differ by %g", options, (double)farthest);

@@ -11,12 +11,12 @@ static PetscErrorCode TestHills(const char *options, EqmStatus status)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 800, 1, &test));
   PetscCall(TestSolve(test.mesh, "conformal", options, &solver));
-  CHECK(solver->unfolded_from > 5, "only %d folds: nothing is tested", (int)solver->unfolded_from);
-  CHECK(solver->unfolded_to == 0 && solver->totals.folds == 0, "%d and %d folds are left", (int)solver->unfolded_to,
-        (int)solver->totals.folds);
-  CHECK(solver->totals.smallest > 0., "smallest image %g", (double)solver->totals.smallest);
+  CHECK(solver->iterate->unfolded_from > 5, "only %d folds: nothing is tested", (int)solver->iterate->unfolded_from);
+  CHECK(solver->iterate->unfolded_to == 0 && solver->iterate->totals.folds == 0, "%d and %d folds are left",
+        (int)solver->iterate->unfolded_to, (int)solver->iterate->totals.folds);
+  CHECK(solver->iterate->totals.smallest > 0., "smallest image %g", (double)solver->iterate->totals.smallest);
   CHECK(solver->status == status, "status %d: %s", (int)solver->status, solver->message);
-  PetscCall(EqmDomainBoundaryInOrder(solver->domain, &solver->place, &in_order));
+  PetscCall(EqmDomainBoundaryInOrder(solver->problem->domain, &solver->iterate->place, &in_order));
   CHECK(in_order, "the boundary is not in its order");
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));

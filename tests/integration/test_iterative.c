@@ -10,9 +10,10 @@ static PetscErrorCode Solve(EqmMesh mesh, const char *target, const char *linear
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(options, sizeof(options), "-max_it 3 -linear_solver %s", linear));
   PetscCall(TestSolve(mesh, target, options, &solver));
-  CHECK(solver->totals.folds == 0, "%d folds", (int)solver->totals.folds);
-  CHECK(strstr(solver->linear_solver, linear) || strcmp(linear, "multigrid"), "it was %s", solver->linear_solver);
-  *energy = solver->totals.energy;
+  CHECK(solver->iterate->totals.folds == 0, "%d folds", (int)solver->iterate->totals.folds);
+  CHECK(strstr(solver->problem->linear_solver, linear) || strcmp(linear, "multigrid"), "it was %s",
+        solver->problem->linear_solver);
+  *energy = solver->iterate->totals.energy;
   PetscCall(EqmSolverDestroy(&solver));
   PetscFunctionReturn(0);
 }

@@ -19,10 +19,10 @@ static PetscErrorCode Run(const char *shape, PetscInt n, const char *target, con
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 3, &test));
   PetscCall(TestSolve(test.mesh, target, options, &solver));
-  trace->num_places = solver->domain->dim * test.mesh->num_owned;
+  trace->num_places = solver->problem->domain->dim * test.mesh->num_owned;
   trace->num_rows = solver->num_history;
   PetscCall(PetscMalloc2(trace->num_places, &trace->places, FIGURES * trace->num_rows, &trace->figures));
-  PetscCall(PetscArraycpy(trace->places, solver->place.x, trace->num_places));
+  PetscCall(PetscArraycpy(trace->places, solver->iterate->place.x, trace->num_places));
   for (PetscInt k = 0; k < trace->num_rows; k++) {
     const EqmHistoryRow *const row = &solver->history[k];
     const PetscReal figures[FIGURES] = {row->energy,

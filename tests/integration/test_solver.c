@@ -11,9 +11,9 @@ static PetscErrorCode TestHistory(const char *shape, const char *target, const c
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 600, 3, &test));
   PetscCall(TestSolve(test.mesh, target, options, &solver));
-  CHECK(solver->totals.folds == 0, "%s %s: %d folds", shape, options, (int)solver->totals.folds);
-  CHECK(solver->num_history == solver->iteration + 1 && solver->iteration > 0, "%d rows for %d iterations",
-        (int)solver->num_history, (int)solver->iteration);
+  CHECK(solver->iterate->totals.folds == 0, "%s %s: %d folds", shape, options, (int)solver->iterate->totals.folds);
+  CHECK(solver->num_history == solver->iterate->number + 1 && solver->iterate->number > 0, "%d rows for %d iterations",
+        (int)solver->num_history, (int)solver->iterate->number);
   for (PetscInt k = 0; k < solver->num_history; k++) {
     const EqmHistoryRow *const row = &solver->history[k];
     CHECK(row->iteration == k, "row %d is of iteration %d", (int)k, (int)row->iteration);
@@ -23,7 +23,8 @@ static PetscErrorCode TestHistory(const char *shape, const char *target, const c
     CHECK(!monotone || solver->objectives[k] < solver->objectives[k - 1], "%s %s: iteration %d goes up from %g to %g",
           shape, options, (int)k, (double)solver->objectives[k - 1], (double)solver->objectives[k]);
   }
-  CHECK(solver->history[solver->iteration].energy == solver->totals.energy, "the last row is not the last map's");
+  CHECK(solver->history[solver->iterate->number].energy == solver->iterate->totals.energy,
+        "the last row is not the last map's");
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);

@@ -6,7 +6,8 @@
 
 static int failures;
 
-/* Count a failure and say what is wrong if `condition` does not hold; the other arguments are a format and its values. */
+/* Count a failure and say what is wrong if `condition` does not hold; the other arguments are a format and its values.
+ */
 #define CHECK(condition, ...)                                                                                          \
   do {                                                                                                                 \
     if (!(condition)) {                                                                                                \

@@ -34,11 +34,12 @@ static inline PetscErrorCode TestRow(EqmMesh mesh, const char *target, const cha
   PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
   *work = (EqmWork){0}; /* -max_factorizations counts those of the ledger */
   PetscCall(TestSolve(mesh, target, options, &solver));
-  *energy = solver->totals.energy;
-  *sd = solver->totals.sd;
+  *energy = solver->iterate->totals.energy;
+  *sd = solver->iterate->totals.sd;
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: energy %.4e, SD %.4e, %d iterations, %d folds\n", options,
-                        (double)*energy, (double)*sd, (int)solver->iteration, (int)solver->totals.folds));
-  CHECK(solver->totals.folds == 0, "%s: %d folds", options, (int)solver->totals.folds);
+                        (double)*energy, (double)*sd, (int)solver->iterate->number,
+                        (int)solver->iterate->totals.folds));
+  CHECK(solver->iterate->totals.folds == 0, "%s: %d folds", options, (int)solver->iterate->totals.folds);
   PetscCall(EqmSolverDestroy(&solver));
   PetscFunctionReturn(0);
 }

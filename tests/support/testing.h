@@ -3,7 +3,7 @@
 #define EQM_TESTING_H
 
 #include <equimap.h>
-#include "method/method.h"
+#include "solver/solver_private.h"
 #include <stdio.h>
 
 /* End all ranks with a message if `condition` does not hold; the other arguments are a format and its values. */
@@ -179,7 +179,7 @@ static inline PetscErrorCode TestStart(EqmMesh mesh, const char *target, EqmSolv
 {
   PetscFunctionBegin;
   PetscCall(TestSolve(mesh, target, "-method lm -start tutte -max_it 0", solver));
-  CHECK((*solver)->totals.folds == 0, "a Tutte map folds %d times", (int)(*solver)->totals.folds);
+  CHECK((*solver)->iterate->totals.folds == 0, "a Tutte map folds %d times", (int)(*solver)->iterate->totals.folds);
   PetscFunctionReturn(0);
 }
 

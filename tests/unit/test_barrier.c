@@ -1,6 +1,7 @@
 /* The barrier against folds of maps to the ball: its derivatives, what it adds to the metric, what it counts. */
 #include "support/testing.h"
-#include "unfold/barrier.h"
+#include "problem/barrier.h"
+#include "solver/solver_private.h"
 
 /* One cell's function against differences, on both sides of a fold. */
 static void TestTerm(EqmBarrier barrier)
@@ -26,11 +27,11 @@ static PetscErrorCode ValueAt(EqmSolver solver, const EqmPlace *from, Vec step, 
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &image));
-  PetscCall(EqmPlaceCreate(solver->domain, &to));
-  PetscCall(EqmDomainMove(solver->domain, from, t, step, &to));
-  PetscCall(EqmImageMeasure(solver->domain, &to, image));
+  PetscCall(EqmPlaceCreate(solver->problem->domain, &to));
+  PetscCall(EqmDomainMove(solver->problem->domain, from, t, step, &to));
+  PetscCall(EqmImageMeasure(solver->problem->domain, &to, image));
   *value = 0.;
-  PetscCall(EqmBarrierAdd(solver, solver->barrier, &to, image, value, gradient));
+  PetscCall(EqmBarrierAdd(solver->problem, &to, image, value, gradient));
   PetscCall(EqmPlaceDestroy(&to));
   PetscCall(PetscFree(image));
   PetscFunctionReturn(0);
@@ -44,15 +45,15 @@ static PetscErrorCode TestGradient(EqmSolver solver)
   Vec gradient, step;
 
   PetscFunctionBegin;
-  PetscCall(EqmDomainCreateVec(solver->domain, &gradient));
+  PetscCall(EqmDomainCreateVec(solver->problem->domain, &gradient));
   PetscCall(VecDuplicate(gradient, &step));
   PetscCall(VecZeroEntries(gradient));
-  PetscCall(TestRandomStep(solver->domain, 3, 1., step));
-  PetscCall(ValueAt(solver, &solver->place, step, 0., &value[0], gradient));
+  PetscCall(TestRandomStep(solver->problem->domain, 3, 1., step));
+  PetscCall(ValueAt(solver, &solver->iterate->place, step, 0., &value[0], gradient));
   PetscCall(VecDot(gradient, step, &slope));
   PetscCall(VecNorm(gradient, NORM_2, &length));
   for (int k = 0; k < 4; k++)
-    PetscCall(ValueAt(solver, &solver->place, step, (k < 2 ? k - 2 : k - 1) * h, &value[k], NULL));
+    PetscCall(ValueAt(solver, &solver->iterate->place, step, (k < 2 ? k - 2 : k - 1) * h, &value[k], NULL));
   CHECK(length > 0., "no gradient");
   CHECK_CLOSE((value[0] - 8. * value[1] + 8. * value[2] - value[3]) / (12. * h), slope, 1e-6, PetscAbsReal(slope));
   PetscCall(VecDestroy(&gradient));
@@ -70,8 +71,8 @@ static PetscErrorCode TestMatrix(EqmSolver solver)
     EqmCellFrame frame;
     PetscReal matrix[144] = {0.}, product = 0., trace = 0.;
     PetscInt n = 0;
-    EqmCellFrameFind(solver->domain, &solver->place, c, &frame);
-    EqmBarrierAddMatrix(solver, c, &frame, matrix);
+    EqmCellFrameFind(solver->problem->domain, &solver->iterate->place, c, &frame);
+    EqmBarrierAddMatrix(solver->problem, &solver->iterate->place, solver->iterate->image, c, &frame, matrix);
     for (PetscInt a = 0; a < 4; a++) n += solver->mesh->on_boundary[solver->mesh->cells[4 * c + a]] ? 2 : 3;
     for (PetscInt i = 0; i < n; i++) {
       trace += matrix[n * i + i];
@@ -98,21 +99,21 @@ int main(int argc, char **argv)
   PetscCall(EqmInitialize(&argc, &argv));
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "ball", 400, 3, &test));
   PetscCall(TestSolve(test.mesh, "ball", "-max_it 0", &solver));
-  PetscCall(TestShakenBall(solver->domain, 5, .05, &solver->place));
-  PetscCall(EqmSolverLook(solver));
-  PetscCall(EqmBarrierCreate(solver, &solver->barrier));
-  solver->barrier->weight = .3;
-  solver->barrier->shape_weight = .2;
-  solver->barrier->epsilon = .1;
-  TestTerm(solver->barrier);
+  PetscCall(TestShakenBall(solver->problem->domain, 5, .05, &solver->iterate->place));
+  PetscCall(EqmIterateUpdate(solver->problem, solver->iterate));
+  PetscCall(EqmBarrierCreate(solver->problem, &solver->iterate->place, &solver->problem->barrier));
+  solver->problem->barrier->weight = .3;
+  solver->problem->barrier->shape_weight = .2;
+  solver->problem->barrier->epsilon = .1;
+  TestTerm(solver->problem->barrier);
   PetscCall(TestGradient(solver));
   PetscCall(TestMatrix(solver));
-  PetscCall(EqmBarrierLook(solver, solver->barrier, &least, &folds));
-  inside = solver->totals.folds;
-  PetscCall(EqmImageBoundaryFolds(solver->domain, &solver->place, &outside));
+  PetscCall(EqmBarrierInspect(solver->problem, solver->iterate, &least, &folds));
+  inside = solver->iterate->totals.folds;
+  PetscCall(EqmImageBoundaryFolds(solver->problem->domain, &solver->iterate->place, &outside));
   CHECK(folds == inside + outside && (folds > 0) == (least <= 0.), "%d folds, %d and %d, least %g", (int)folds,
         (int)inside, (int)outside, (double)least);
-  PetscCall(EqmBarrierDestroy(&solver->barrier));
+  PetscCall(EqmBarrierDestroy(&solver->problem->barrier));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscCall(EqmFinalize());

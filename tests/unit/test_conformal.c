@@ -18,9 +18,9 @@ static PetscErrorCode Begin(const char *shape, PetscInt n, const char *start, Se
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 3, &s->test));
   PetscCall(PetscSNPrintf(text, sizeof(text), "-max_it 0 -start %s", start));
   PetscCall(TestSolve(s->test.mesh, "conformal", text, &s->solver));
-  s->domain = s->solver->domain;
-  PetscCall(EqmAngleWeights(s->solver, &s->weights));
-  PetscCall(EqmVertexMass(s->solver, &s->mass));
+  s->domain = s->solver->problem->domain;
+  PetscCall(EqmProblemGetAngleWeights(s->solver->problem, &s->weights));
+  PetscCall(EqmProblemGetVertexMass(s->solver->problem, &s->mass));
   PetscCall(PetscMalloc1(s->test.mesh->num_local_cells, &s->a));
   PetscFunctionReturn(0);
 }
@@ -47,10 +47,10 @@ static PetscErrorCode TestGradient(Setting *s, const PetscReal *mass)
   PetscCall(VecDuplicate(step, &gradient));
   PetscCall(EqmPlaceCreate(s->domain, &to));
   PetscCall(TestRandomStep(s->domain, 4, .1, step));
-  PetscCall(EqmConformalEnergy(s->domain, s->weights, mass, &s->solver->place, s->a, &value, gradient));
+  PetscCall(EqmConformalEnergy(s->domain, s->weights, mass, &s->solver->iterate->place, s->a, &value, gradient));
   PetscCall(VecDot(gradient, step, &product));
   for (int k = 0; k < 4; k++) {
-    PetscCall(EqmDomainMove(s->domain, &s->solver->place, (k < 2 ? k - 2 : k - 1) * h, step, &to));
+    PetscCall(EqmDomainMove(s->domain, &s->solver->iterate->place, (k < 2 ? k - 2 : k - 1) * h, step, &to));
     PetscCall(EqmConformalEnergy(s->domain, s->weights, mass, &to, s->a, &at[k], NULL));
   }
   CHECK_CLOSE((8. * (at[2] - at[1]) - (at[3] - at[0])) / (12. * h), product, 1e-8, PetscAbsReal(product));
@@ -71,7 +71,7 @@ static PetscErrorCode TestValue(Setting *s, PetscBool itself)
 
   PetscFunctionBegin;
   PetscCall(EqmPlaceCreate(s->domain, &place));
-  PetscCall(EqmPlaceCopy(s->domain, &s->solver->place, &place));
+  PetscCall(EqmPlaceCopy(s->domain, &s->solver->iterate->place, &place));
   if (itself) PetscCall(PetscArraycpy(place.x, mesh->position, 3 * mesh->num_local));
   PetscCall(EqmConformalEnergy(s->domain, s->weights, NULL, &place, s->a, &energy, NULL));
   PetscCall(EqmConformalEnergy(s->domain, s->weights, s->mass, &place, s->a, &with_center, NULL));
@@ -95,7 +95,7 @@ static PetscErrorCode SmallestDet(Setting *s, const PetscReal *velocity, PetscRe
 
   PetscFunctionBegin;
   PetscCall(EqmPlaceCreate(s->domain, &to));
-  for (PetscInt k = 0; k < 3 * mesh->num_local; k++) to.x[k] = s->solver->place.x[k] + t * velocity[k];
+  for (PetscInt k = 0; k < 3 * mesh->num_local; k++) to.x[k] = s->solver->iterate->place.x[k] + t * velocity[k];
   PetscCall(EqmImageMeasureOf(s->domain, EQM_MEASURE_HALF_DET, &to, s->a));
   for (PetscInt c = 0; c < mesh->num_owned_cells; c++) local = PetscMin(local, s->a[c]);
   *smallest = -TestMax(mesh->comm, -local);
@@ -113,8 +113,8 @@ static PetscErrorCode TestStepLimit(Setting *s, PetscReal size)
   PetscCall(PetscMalloc1(3 * s->test.mesh->num_local, &velocity));
   PetscCall(EqmDomainCreateVec(s->domain, &step));
   PetscCall(TestRandomStep(s->domain, 9, size, step));
-  PetscCall(EqmDomainExpand(s->domain, &s->solver->place, step, velocity));
-  PetscCall(EqmObjectiveConformal.longest_step(s->solver, step, &t));
+  PetscCall(EqmDomainExpand(s->domain, &s->solver->iterate->place, step, velocity));
+  PetscCall(EqmObjectiveConformal.longest_step(s->solver->problem, s->solver->iterate, step, &t));
   CHECK(t > 0. && t <= 1., "t = %g", (double)t);
   PetscCall(SmallestDet(s, velocity, t, &smallest));
   CHECK(smallest > 0., "a cell folds before the limit %g", (double)t);

@@ -195,14 +195,14 @@ static PetscErrorCode TestDisk(const char *shape)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 300, 1, &test));
   PetscCall(TestStart(test.mesh, "disk", &solver));
-  const EqmDomain domain = solver->domain;
+  const EqmDomain domain = solver->problem->domain;
   CHECK_CLOSE(TestSum(PETSC_COMM_WORLD, domain->num_dofs),
               2. * test.mesh->num_vertices - test.mesh->num_boundary_vertices, 0., 1.);
-  PetscCall(TestGeodesics(domain, &solver->place));
-  PetscCall(TestFrames(domain, &solver->place));
-  PetscCall(TestStaysOnBoundary(domain, &solver->place));
-  PetscCall(TestOrderOnCircle(domain, &solver->place));
-  PetscCall(TestOvertaking(domain, &solver->place));
+  PetscCall(TestGeodesics(domain, &solver->iterate->place));
+  PetscCall(TestFrames(domain, &solver->iterate->place));
+  PetscCall(TestStaysOnBoundary(domain, &solver->iterate->place));
+  PetscCall(TestOrderOnCircle(domain, &solver->iterate->place));
+  PetscCall(TestOvertaking(domain, &solver->iterate->place));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);
@@ -299,12 +299,13 @@ static PetscErrorCode TestSquare(const char *shape)
   const PetscInt even[4] = {0, n / 4, n / 2, 3 * n / 4}, turned[4] = {n - 2, 3, n / 2, n / 2 + 1},
                  close[4] = {4, 5, 6, 7};
   PetscCall(TestStart(test.mesh, "square", &solver));
-  CHECK_CLOSE(TestSum(PETSC_COMM_WORLD, solver->domain->num_dofs), 2. * test.mesh->num_vertices - n - 4, 0., 1.);
-  PetscCall(TestGeodesics(solver->domain, &solver->place));
-  PetscCall(TestFrames(solver->domain, &solver->place));
-  PetscCall(TestStaysOnBoundary(solver->domain, &solver->place));
-  PetscCall(ExpectOrder(solver->domain, &solver->place, PETSC_TRUE, "by arc length"));
-  PetscCall(TestOvertaking(solver->domain, &solver->place));
+  CHECK_CLOSE(TestSum(PETSC_COMM_WORLD, solver->problem->domain->num_dofs), 2. * test.mesh->num_vertices - n - 4, 0.,
+              1.);
+  PetscCall(TestGeodesics(solver->problem->domain, &solver->iterate->place));
+  PetscCall(TestFrames(solver->problem->domain, &solver->iterate->place));
+  PetscCall(TestStaysOnBoundary(solver->problem->domain, &solver->iterate->place));
+  PetscCall(ExpectOrder(solver->problem->domain, &solver->iterate->place, PETSC_TRUE, "by arc length"));
+  PetscCall(TestOvertaking(solver->problem->domain, &solver->iterate->place));
   PetscCall(Loop(test.mesh, &loop));
   PetscCall(TestCorners(test.mesh, loop, even));
   PetscCall(TestCorners(test.mesh, loop, turned));

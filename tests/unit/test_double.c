@@ -129,14 +129,14 @@ static PetscErrorCode Compare(PetscInt n, PetscBool flat, EqmDistortion *distort
   CHECK(map->num_history == map->iterations + 1, "%d rows", (int)map->num_history);
   PetscCall(EqmMapDestroy(&map));
   for (PetscInt v = 0; v < test.mesh->num_local; v++) {
-    const PetscReal *const z = solver->place.x + 2 * v, length = PetscSqrtReal(z[0] * z[0] + z[1] * z[1]);
+    const PetscReal *const z = solver->iterate->place.x + 2 * v, length = PetscSqrtReal(z[0] * z[0] + z[1] * z[1]);
     CHECK(test.mesh->on_boundary[v] ? PetscAbsReal(length - 1.) < 1e-15 : length < 1., "radius 1 + %g",
           (double)(length - 1.));
   }
-  PetscCall(EqmDomainBoundaryInOrder(solver->domain, &solver->place, &in_order));
+  PetscCall(EqmDomainBoundaryInOrder(solver->problem->domain, &solver->iterate->place, &in_order));
   CHECK(in_order, "the boundary is not in order");
   PetscCall(TestSolve(test.mesh, "conformal", "-gradient_tol 1e-8", &other));
-  *difference = TestRmsAfterRotation(test.mesh, solver->place.x, other->place.x);
+  *difference = TestRmsAfterRotation(test.mesh, solver->iterate->place.x, other->iterate->place.x);
   PetscCall(EqmSolverDestroy(&other));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));

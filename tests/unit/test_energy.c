@@ -281,7 +281,7 @@ static PetscErrorCode TestTarget(const char *shape, PetscInt n, const char *targ
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 3, &test));
   PetscCall(TestStart(test.mesh, target, &solver));
-  PetscCall(TestPlace(solver->domain, &solver->place));
+  PetscCall(TestPlace(solver->problem->domain, &solver->iterate->place));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);

@@ -16,8 +16,8 @@ static PetscErrorCode Begin(Setting *s)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "head", 400, 3, &s->test));
   PetscCall(TestSolve(s->test.mesh, "conformal", "-max_it 0 -start tutte", &s->solver));
-  s->domain = s->solver->domain;
-  PetscCall(EqmAngleWeights(s->solver, &s->weights));
+  s->domain = s->solver->problem->domain;
+  PetscCall(EqmProblemGetAngleWeights(s->solver->problem, &s->weights));
   PetscFunctionReturn(0);
 }
 
@@ -38,10 +38,10 @@ static PetscErrorCode TestSpeed(Setting *s)
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * s->test.mesh->num_owned, &af));
   PetscCall(EqmDomainCreateVec(s->domain, &gradient));
-  PetscCall(EqmFlowLaplacian(s->solver, &s->solver->place, af, NULL));
-  PetscCall(EqmDomainProject(s->domain, &s->solver->place, af, gradient));
+  PetscCall(EqmFlowLaplacian(s->solver->problem, &s->solver->iterate->place, af, NULL));
+  PetscCall(EqmDomainProject(s->domain, &s->solver->iterate->place, af, gradient));
   PetscCall(VecNorm(gradient, NORM_2, &norm));
-  PetscCall(EqmFlowSpeed(s->solver, &s->solver->place, &speed));
+  PetscCall(EqmFlowSpeed(s->solver->problem, &s->solver->iterate->place, &speed));
   CHECK_CLOSE(speed, norm, 1e-12, norm);
   CHECK(norm > .1, "speed %g", (double)norm);
   PetscCall(VecDestroy(&gradient));
@@ -68,7 +68,7 @@ static PetscErrorCode TestJacobian(Setting *s)
   const PetscReal h = .1;
   PetscReal *u, *product, *at[4], matrix[81];
   EqmPlace place, moved;
-  EqmImplicitStep step = {.solver = s->solver, .weights = s->weights, .place = &place, .dt = 1.7};
+  EqmImplicitStep step = {.problem = s->solver->problem, .weights = s->weights, .place = &place, .dt = 1.7};
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * mesh->num_local, &u));
@@ -76,7 +76,7 @@ static PetscErrorCode TestJacobian(Setting *s)
   PetscCall(EqmPlaceCreate(s->domain, &place));
   PetscCall(EqmPlaceCreate(s->domain, &moved));
   for (PetscInt k = 0; k < n; k++) {
-    place.x[k] = s->solver->place.x[k] + .2 * TestRandom(1, mesh->vertex_input[k / 3], k % 3);
+    place.x[k] = s->solver->iterate->place.x[k] + .2 * TestRandom(1, mesh->vertex_input[k / 3], k % 3);
     u[k] = TestRandom(2, mesh->vertex_input[k / 3], k % 3);
   }
   PetscCall(EqmMeshUpdateGhosts(mesh, 3, place.x));
@@ -89,7 +89,7 @@ static PetscErrorCode TestJacobian(Setting *s)
   for (int d = 0; d < 4; d++) {
     for (PetscInt k = 0; k < 3 * mesh->num_local; k++) moved.x[k] = place.x[k] + (d < 2 ? d - 2 : d - 1) * h * u[k];
     PetscCall(PetscMalloc1(n, &at[d]));
-    PetscCall(EqmImplicitResidual(&step, &s->solver->place, at[d]));
+    PetscCall(EqmImplicitResidual(&step, &s->solver->iterate->place, at[d]));
   }
   for (PetscInt k = 0; k < n; k++) /* the identity is added as a shift */
     CHECK_CLOSE((8. * (at[2][k] - at[1][k]) - (at[3][k] - at[0][k])) / (12. * h), product[k] + u[k], 1e-10, 10.);

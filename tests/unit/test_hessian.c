@@ -14,16 +14,16 @@ static PetscErrorCode GradientAlong(EqmSolver solver, PetscInt dof, PetscReal t,
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(solver->mesh->num_local_cells, &a));
-  PetscCall(EqmPlaceCreate(solver->domain, &to));
-  PetscCall(EqmDomainCreateVec(solver->domain, &step));
+  PetscCall(EqmPlaceCreate(solver->problem->domain, &to));
+  PetscCall(EqmDomainCreateVec(solver->problem->domain, &step));
   PetscCall(VecSet(step, 0.));
   PetscCall(VecSetValue(step, dof, t, INSERT_VALUES));
   PetscCall(VecAssemblyBegin(step));
   PetscCall(VecAssemblyEnd(step));
-  PetscCall(EqmDomainMove(solver->domain, &solver->place, 1., step, &to));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &to, a, &energy, step));
+  PetscCall(EqmDomainMove(solver->problem->domain, &solver->iterate->place, 1., step, &to));
+  PetscCall(EqmAuthalicEnergy(solver->problem->domain, &to, a, &energy, step));
   PetscCall(VecGetArrayRead(step, &g));
-  PetscCall(PetscArraycpy(gradient, g, solver->domain->num_dofs));
+  PetscCall(PetscArraycpy(gradient, g, solver->problem->domain->num_dofs));
   PetscCall(VecRestoreArrayRead(step, &g));
   PetscCall(VecDestroy(&step));
   PetscCall(EqmPlaceDestroy(&to));
@@ -61,7 +61,7 @@ static PetscErrorCode Jacobi(PetscInt n, PetscReal *m, PetscReal *eigenvalues)
 /* All eigenvalues, ascending, of the Hessian by differences of fourth order. On one rank. */
 static PetscErrorCode DenseEigenvalues(EqmSolver solver, PetscReal *eigenvalues)
 {
-  const PetscInt n = solver->domain->num_dofs;
+  const PetscInt n = solver->problem->domain->num_dofs;
   const PetscReal h = 1e-3;
   PetscReal *matrix, *gradient;
 
@@ -95,7 +95,7 @@ static PetscErrorCode Test(const char *shape, const char *target, PetscInt max_i
     PetscCall(EqmSolverHessianEigenvalues(solver, WANTED, values[k], &found[k]));
     CHECK(found[k] == WANTED, "only %d of %d eigenvalues", (int)found[k], WANTED);
     if (k == 0) {
-      n = solver->domain->num_dofs;
+      n = solver->problem->domain->num_dofs;
       PetscCall(PetscMalloc1(n, &dense));
       PetscCall(DenseEigenvalues(solver, dense));
       CHECK_FAILS(EQM_ERR_USAGE, EqmSolverHessianEigenvalues(solver, n + 1, dense, &found[1]));

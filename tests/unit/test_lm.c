@@ -9,12 +9,13 @@ static PetscErrorCode DrawLandmarks(EqmSolver solver)
   static const PetscInt vertex[3] = {5, 40, 77};
   static const PetscReal place[9] = {.3, .4, .866, -.5, .2, .84, .6, -.1, .79};
   PetscReal in_target[9];
-  const PetscInt dim = solver->domain->dim;
+  const PetscInt dim = solver->problem->domain->dim;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < 3 * dim; k++) in_target[k] = place[3 * (k / dim) + k % dim];
-  PetscCall(EqmSolverSetLandmarks(solver, 3, dim, vertex, in_target, 2., 1e-3));
-  PetscCall(EqmLandmarksSetUp(&solver->landmarks, solver->domain));
+  PetscCall(EqmLandmarksGive(&solver->problem->landmarks, 3, dim, vertex, in_target));
+  solver->problem->landmarks.lambda = 2.;
+  PetscCall(EqmLandmarksSetUp(&solver->problem->landmarks, solver->problem->domain));
   PetscFunctionReturn(0);
 }
 
@@ -28,17 +29,16 @@ static PetscErrorCode Begin(EqmMesh mesh, const char *target, PetscReal balance,
                           (double)balance));
   PetscCall(TestSolve(mesh, target, options, solver));
   if (landmarks) PetscCall(DrawLandmarks(*solver));
-  PetscCall((*solver)->method->set_up(*solver));
-  EqmLm *const lm = (*solver)->data;
+  PetscCall(EqmMethodSetUp((*solver)->method, (*solver)->problem, (*solver)->iterate));
+  EqmLm *const lm = (*solver)->method->data;
   if (lm->kappa > 0.) lm->kappa = .3; /* not one, so that a forgotten factor shows */
-  PetscCall(EqmLmLinearise(*solver));
+  PetscCall(EqmLmLinearise((*solver)->method, (*solver)->iterate));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode End(EqmSolver *solver)
 {
   PetscFunctionBegin;
-  PetscCall((*solver)->method->destroy(*solver));
   PetscCall(EqmSolverDestroy(solver));
   PetscFunctionReturn(0);
 }
@@ -46,11 +46,11 @@ static PetscErrorCode End(EqmSolver *solver)
 /* Objective and residuals at parameter t of the geodesic of `step`; the result lies in lm->attempt. */
 static PetscErrorCode At(EqmSolver solver, Vec step, PetscReal t)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = solver->method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmDomainMove(solver->domain, &lm->now.place, t, step, &lm->attempt.place));
-  PetscCall(EqmLmEvaluate(solver, &lm->attempt));
+  PetscCall(EqmDomainMove(solver->problem->domain, &lm->now.place, t, step, &lm->attempt.place));
+  PetscCall(EqmLmEvaluate(solver->method, &lm->attempt));
   CHECK(!PetscIsInfOrNanReal(lm->attempt.objective), "a tiny step folds the map");
   PetscFunctionReturn(0);
 }
@@ -60,7 +60,7 @@ static PetscErrorCode At(EqmSolver solver, Vec step, PetscReal t)
 static PetscErrorCode Sample(EqmSolver solver, Vec step, PetscReal h, PetscReal *residual, PetscReal *lean,
                              PetscReal objective[5])
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = solver->method->data;
   const PetscInt m = solver->mesh->num_local_cells;
 
   PetscFunctionBegin;
@@ -87,8 +87,8 @@ static PetscReal SecondDifference(PetscInt m, const PetscReal *f, PetscReal h)
 static PetscErrorCode ScaleToMesh(EqmSolver solver, Vec step)
 {
   const EqmMesh mesh = solver->mesh;
-  const PetscReal *const x = solver->place.x;
-  const PetscInt dim = solver->domain->dim;
+  const PetscReal *const x = solver->iterate->place.x;
+  const PetscInt dim = solver->problem->domain->dim;
   PetscReal shortest = -PETSC_MAX_REAL, largest;
 
   PetscFunctionBegin;
@@ -106,7 +106,7 @@ static PetscErrorCode ScaleToMesh(EqmSolver solver, Vec step)
 /* lm->descent is minus half the gradient of what EqmLmEvaluate computes. */
 static PetscErrorCode TestGradient(EqmSolver solver)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = solver->method->data;
   PetscReal *residual, objective[5], product, norm[2];
   Vec step;
 
@@ -114,7 +114,7 @@ static PetscErrorCode TestGradient(EqmSolver solver)
   PetscCall(PetscMalloc1(5 * solver->mesh->num_local_cells, &residual));
   PetscCall(VecDuplicate(lm->descent, &step));
   for (PetscInt seed = 0; seed < 3; seed++) {
-    PetscCall(TestRandomStep(solver->domain, seed, 1., step));
+    PetscCall(TestRandomStep(solver->problem->domain, seed, 1., step));
     if (seed == 2) PetscCall(VecCopy(lm->descent, step));
     PetscCall(ScaleToMesh(solver, step));
     PetscCall(Sample(solver, step, 1e-2, residual, NULL, objective));
@@ -123,7 +123,7 @@ static PetscErrorCode TestGradient(EqmSolver solver)
     PetscCall(VecNorm(step, NORM_2, &norm[1]));
     CHECK_CLOSE(FirstDifference(1, objective, 1e-2), -2. * product, 1e-7, norm[0] * norm[1]);
   }
-  CHECK_CLOSE(solver->gradient_norm, 2. * norm[0], 1e-12, norm[0]);
+  CHECK_CLOSE(solver->iterate->gradient_norm, 2. * norm[0], 1e-12, norm[0]);
   PetscCall(VecDestroy(&step));
   PetscCall(PetscFree(residual));
   PetscFunctionReturn(0);
@@ -133,9 +133,9 @@ static PetscErrorCode TestGradient(EqmSolver solver)
    displacement about its mean. */
 static PetscReal Metric(EqmSolver solver, const PetscReal *velocity)
 {
-  const EqmLm *const lm = solver->data;
+  const EqmLm *const lm = solver->method->data;
   const EqmMesh mesh = solver->mesh;
-  const PetscInt dim = solver->domain->dim;
+  const PetscInt dim = solver->problem->domain->dim;
   PetscReal sum = 0.;
 
   for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
@@ -154,14 +154,14 @@ static PetscReal Metric(EqmSolver solver, const PetscReal *velocity)
 /* x^T H x from the definition: sum w (d rho)^2 + kappa sum w (d q)^2 by differences, metric, angle energy. */
 static PetscErrorCode QuadraticForm(EqmSolver solver, Vec x, PetscReal *form)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = solver->method->data;
   const EqmMesh mesh = solver->mesh;
   const PetscInt m = mesh->num_local_cells;
   PetscReal *residual, *lean = NULL, *velocity, objective[5], gauss = 0., drawn = 0., length, scale;
   Vec step;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(5 * m, &residual, solver->domain->dim * mesh->num_local, &velocity));
+  PetscCall(PetscMalloc2(5 * m, &residual, solver->problem->domain->dim * mesh->num_local, &velocity));
   if (lm->kappa > 0.) PetscCall(PetscMalloc1(5 * m, &lean));
   PetscCall(VecDuplicate(x, &step));
   PetscCall(VecCopy(x, step));
@@ -173,16 +173,17 @@ static PetscErrorCode QuadraticForm(EqmSolver solver, Vec x, PetscReal *form)
     gauss += mesh->weight[c] * PetscSqr(FirstDifference(m, residual + c, 1e-2));
     if (lean) gauss += lm->kappa * mesh->weight[c] * PetscSqr(FirstDifference(m, lean + c, 1e-2));
   }
-  PetscCall(EqmDomainExpand(solver->domain, &lm->now.place, step, velocity));
+  PetscCall(EqmDomainExpand(solver->problem->domain, &lm->now.place, step, velocity));
   *form = TestSum(mesh->comm, gauss) + Metric(solver, velocity);
   if (lm->epsilon > 0.) {
     PetscReal angle;
-    PetscCall(EqmLmAngleEnergy(solver, velocity, &angle));
-    *form += lm->epsilon / solver->domain->target_measure * angle;
+    PetscCall(EqmLmAngleEnergy(solver->method, velocity, &angle));
+    *form += lm->epsilon / solver->problem->domain->target_measure * angle;
   }
-  for (PetscInt i = 0; i < solver->landmarks.num; i++) {
-    for (PetscInt k = 0; k < solver->domain->dim; k++)
-      drawn += solver->landmarks.weight * PetscSqr(velocity[solver->domain->dim * solver->landmarks.vertex[i] + k]);
+  for (PetscInt i = 0; i < solver->problem->landmarks.num; i++) {
+    for (PetscInt k = 0; k < solver->problem->domain->dim; k++)
+      drawn += solver->problem->landmarks.weight *
+               PetscSqr(velocity[solver->problem->domain->dim * solver->problem->landmarks.vertex[i] + k]);
   }
   *form += TestSum(mesh->comm, drawn);
   *form *= PetscSqr(length / scale);
@@ -195,27 +196,27 @@ static PetscErrorCode QuadraticForm(EqmSolver solver, Vec x, PetscReal *form)
 /* With x = H^-1 b, x^T b must be x^T H x; with sums of right-hand sides this fixes the whole matrix. */
 static PetscErrorCode TestMatrix(EqmSolver solver)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = solver->method->data;
   PetscReal form, product;
   PetscBool success;
   Vec b[3], x;
 
   PetscFunctionBegin;
   lm->mu = .03;
-  PetscCall(EqmLmFactor(solver, &success));
+  PetscCall(EqmLmFactor(solver->method, &success));
   CHECK(success, "the matrix at the start is not definite");
-  PetscCall(EqmLmSolveForStep(solver, &success)); /* makes the mean's term, too */
+  PetscCall(EqmLmSolveForStep(solver->method, &success)); /* makes the mean's term, too */
   for (int k = 0; k < 3; k++) {
     PetscCall(VecDuplicate(lm->descent, &b[k]));
     if (k < 2)
-      PetscCall(TestRandomStep(solver->domain, 20 + k, 1., b[k]));
+      PetscCall(TestRandomStep(solver->problem->domain, 20 + k, 1., b[k]));
     else
       PetscCall(VecWAXPY(b[2], 1., b[0], b[1]));
   }
   PetscCall(VecDuplicate(lm->descent, &x));
   for (int k = 0; k < 3; k++) {
     PetscCall(VecCopy(b[k], x));
-    PetscCall(EqmLmApplyInverse(solver, x));
+    PetscCall(EqmLmApplyInverse(solver->method, x));
     PetscCall(VecDot(x, b[k], &product));
     PetscCall(QuadraticForm(solver, x, &form));
     CHECK_CLOSE(form, product, 1e-6, product);
@@ -228,7 +229,7 @@ static PetscErrorCode TestMatrix(EqmSolver solver)
 /* The bend is the residuals' second derivative along the geodesic of the step. */
 static PetscErrorCode TestBend(EqmSolver solver)
 {
-  EqmLm *const lm = solver->data;
+  EqmLm *const lm = solver->method->data;
   const EqmMesh mesh = solver->mesh;
   const PetscInt m = mesh->num_local_cells;
   PetscReal *residual, *lean = NULL, *bend, *lean_bend = NULL, objective[5], ratio, length, scale, largest = 0.,
@@ -239,12 +240,12 @@ static PetscErrorCode TestBend(EqmSolver solver)
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(5 * m, &residual, m, &bend));
   if (lm->kappa > 0.) PetscCall(PetscMalloc2(5 * m, &lean, m, &lean_bend));
-  PetscCall(EqmLmFactor(solver, &success));
-  PetscCall(EqmLmSolveForStep(solver, &success));
-  PetscCall(EqmLmSolveForCurve(solver, &ratio));
+  PetscCall(EqmLmFactor(solver->method, &success));
+  PetscCall(EqmLmSolveForStep(solver->method, &success));
+  PetscCall(EqmLmSolveForCurve(solver->method, &ratio));
   PetscCall(PetscArraycpy(bend, lm->bend, m)); /* evaluations use it as scratch */
   if (lean) PetscCall(PetscArraycpy(lean_bend, lm->lean_bend, m));
-  PetscCall(EqmLmPredictedDecrease(solver, &predicted));
+  PetscCall(EqmLmPredictedDecrease(solver->method, &predicted));
   CHECK(predicted > 0., "the model promises a decrease of %g", (double)predicted);
   PetscCall(VecDuplicate(lm->step, &step));
   PetscCall(VecCopy(lm->step, step));
@@ -276,7 +277,7 @@ static PetscErrorCode MapFrom(EqmMesh mesh, PetscReal shift, PetscReal *x)
 
   PetscFunctionBegin;
   PetscCall(TestSolve(mesh, "disk", "-method lm -max_it 0", &solver));
-  PetscCall(PetscArraycpy(x, solver->place.x, n));
+  PetscCall(PetscArraycpy(x, solver->iterate->place.x, n));
   PetscCall(EqmSolverDestroy(&solver));
   for (PetscInt k = 0; k < n; k++) {
     if (!mesh->on_boundary[k / 2]) x[k] += shift * TestRandom(4, mesh->vertex_input[k / 2], k % 2);
@@ -287,7 +288,7 @@ static PetscErrorCode MapFrom(EqmMesh mesh, PetscReal shift, PetscReal *x)
   PetscCall(TestOptionsEnd(&options));
   PetscCall(EqmSolverSetFirstMap(solver, 2, x));
   PetscCall(EqmSolverSolve(solver));
-  PetscCall(PetscArraycpy(x, solver->place.x, n));
+  PetscCall(PetscArraycpy(x, solver->iterate->place.x, n));
   PetscCall(EqmSolverDestroy(&solver));
   PetscFunctionReturn(0);
 }

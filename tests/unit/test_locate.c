@@ -2,7 +2,7 @@
    the same on any number of ranks; closest points and best rotations against brute force. */
 #include "support/testing.h"
 #include "register/closest.h"
-#include "register/rotation.h"
+#include "geometry/rotation.h"
 #include "register/tree.h"
 #include <math.h>
 
@@ -27,7 +27,7 @@ static PetscErrorCode Make(const char *shape, const char *target, EqmImageKind k
   image->x = image->test.mesh->position;
   if (target) {
     PetscCall(TestSolve(image->test.mesh, target, "-method lm -max_it 0", &image->solver));
-    image->x = image->solver->place.x;
+    image->x = image->solver->iterate->place.x;
   }
   PetscFunctionReturn(0);
 }

@@ -256,7 +256,8 @@ static PetscErrorCode TestFan(void)
   PetscCall(MakeFan(PETSC_COMM_WORLD, &soup));
   PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(TestSolve(test.mesh, "disk", "-method lm", &solver));
-  CHECK(solver->totals.folds == 0 && solver->totals.energy < 1e-10, "energy %g", (double)solver->totals.energy);
+  CHECK(solver->iterate->totals.folds == 0 && solver->iterate->totals.energy < 1e-10, "energy %g",
+        (double)solver->iterate->totals.energy);
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);

@@ -22,12 +22,12 @@ static PetscErrorCode Begin(const char *shape, Setting *s)
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 300, 6, &s->test));
   const EqmMesh mesh = s->test.mesh;
   PetscCall(TestStart(mesh, "disk", &s->solver));
-  s->domain = s->solver->domain;
-  s->x = s->solver->place.x;
+  s->domain = s->solver->problem->domain;
+  s->x = s->solver->iterate->place.x;
   PetscCall(PetscMalloc3(3 * mesh->num_local_cells, &s->weights, 2 * mesh->num_owned, &s->stretch,
                          mesh->num_local_cells, &s->a));
   PetscCall(PetscCalloc1(2 * mesh->num_local, &s->difference));
-  PetscCall(EqmLaplacianWeights(s->domain, EQM_LAPLACIAN_STRETCH, &s->solver->place, s->weights));
+  PetscCall(EqmLaplacianWeights(s->domain, EQM_LAPLACIAN_STRETCH, &s->solver->iterate->place, s->weights));
   PetscCall(EqmLaplacianApply(mesh, s->weights, 2, s->x, s->stretch));
   PetscCall(EqmLaplacianEnergy(mesh, s->weights, 2, s->x, &s->energy_s));
   for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
@@ -60,7 +60,7 @@ static PetscErrorCode TestArea(Setting *s)
   PetscReal sines = 0.;
 
   PetscFunctionBegin;
-  PetscCall(EqmImageMeasure(s->domain, &s->solver->place, s->a));
+  PetscCall(EqmImageMeasure(s->domain, &s->solver->iterate->place, s->a));
   PetscCall(EqmImageSum(mesh, s->a, &totals));
   CHECK_CLOSE(s->area, totals.total, 1e-13, totals.total);
   for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
@@ -85,8 +85,8 @@ static PetscErrorCode TestAreaGradient(Setting *s)
   PetscCall(PetscMalloc2(mesh->num_local_cells, &ones, 2 * mesh->num_owned, &ambient));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) ones[c] = 1.;
   PetscCall(EqmDomainCreateVec(s->domain, &gradient));
-  PetscCall(EqmImageGradient(s->domain, &s->solver->place, ones, ambient));
-  PetscCall(EqmDomainProject(s->domain, &s->solver->place, ambient, gradient));
+  PetscCall(EqmImageGradient(s->domain, &s->solver->iterate->place, ones, ambient));
+  PetscCall(EqmDomainProject(s->domain, &s->solver->iterate->place, ambient, gradient));
   PetscCall(VecGetArrayRead(gradient, &g));
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
     const PetscReal *const f = s->x + 2 * v, *const d = s->difference + 2 * v;
@@ -112,7 +112,7 @@ static PetscErrorCode TestEnergyGradient(Setting *s)
 
   PetscFunctionBegin;
   PetscCall(EqmDomainCreateVec(s->domain, &gradient));
-  PetscCall(EqmAuthalicEnergy(s->domain, &s->solver->place, s->a, &energy, gradient));
+  PetscCall(EqmAuthalicEnergy(s->domain, &s->solver->iterate->place, s->a, &energy, gradient));
   PetscCall(VecGetArrayRead(gradient, &g));
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
     const PetscReal *const f = s->x + 2 * v, *const d = s->difference + 2 * v, *const l = s->stretch + 2 * v;
@@ -139,7 +139,7 @@ static PetscErrorCode TestNormalisedLaplacian(Setting *s)
   PetscReal energy, printed = 0.;
 
   PetscFunctionBegin;
-  PetscCall(EqmAuthalicEnergy(s->domain, &s->solver->place, s->a, &energy, NULL));
+  PetscCall(EqmAuthalicEnergy(s->domain, &s->solver->iterate->place, s->a, &energy, NULL));
   for (PetscInt c = 0; c < mesh->num_owned_cells; c++) { /* rows: off-diagonal entries over A, diagonal as printed */
     for (PetscInt k = 0; k < 3; k++) {
       const PetscReal *const p = s->x + 2 * mesh->cells[3 * c + (k + 1) % 3], *const q =
@@ -164,7 +164,7 @@ static PetscErrorCode TestStretchGradient(Setting *s)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(2 * mesh->num_local, &h));
-  PetscCall(EqmImageMeasure(s->domain, &s->solver->place, s->a));
+  PetscCall(EqmImageMeasure(s->domain, &s->solver->iterate->place, s->a));
   for (PetscInt k = 0; k < 3 * mesh->num_local_cells; k++) {
     const PetscInt c = k / 3, i = mesh->cells[k], first = mesh->cells[3 * c + (k + 1) % 3],
                    second = mesh->cells[3 * c + (k + 2) % 3];
@@ -187,14 +187,14 @@ static PetscErrorCode TestUnnormalisedEnergy(Setting *s)
   EqmSolver solver;
 
   PetscFunctionBegin;
-  PetscCall(EqmAuthalicEnergy(s->domain, &s->solver->place, s->a, &energy, NULL));
+  PetscCall(EqmAuthalicEnergy(s->domain, &s->solver->iterate->place, s->a, &energy, NULL));
   larger = s->energy_s / 100. - s->area; /* |S| = 100 */
   CHECK(larger < 0. && energy > 0., "%g, %g", (double)larger, (double)energy);
   PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, soup->file, 300, 6, &soup));
   for (PetscInt k = 0; k < 3 * (soup->vertex_end - soup->vertex_start); k++) soup->vertices[k] *= 1000.;
   PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(TestStart(test.mesh, "disk", &solver));
-  CHECK_CLOSE(solver->totals.energy, energy, 1e-9, energy);
+  CHECK_CLOSE(solver->iterate->totals.energy, energy, 1e-9, energy);
   CHECK_CLOSE(test.mesh->measure, 1e6 * mesh->measure, 1e-12, test.mesh->measure);
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));

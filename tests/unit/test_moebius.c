@@ -17,7 +17,7 @@ static PetscErrorCode Begin(const char *shape, PetscInt n, Setting *s)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 3, &s->test));
   PetscCall(TestSolve(s->test.mesh, "sphere", "-method fixed-point -max_it 0", &s->solver));
-  s->domain = s->solver->domain;
+  s->domain = s->solver->problem->domain;
   PetscCall(PetscMalloc1(s->test.mesh->num_owned, &s->mass));
   PetscCall(EqmMeshVertexWeights(s->test.mesh, s->mass));
   for (PetscInt v = 0; v < s->test.mesh->num_owned; v++) total += s->mass[v];
@@ -45,12 +45,12 @@ static PetscErrorCode TestCrossRatios(Setting *s)
 {
   const EqmMesh mesh = s->test.mesh;
   const PetscReal c[3] = {.3, -.5, .6};
-  const PetscReal *const x = s->solver->place.x;
+  const PetscReal *const x = s->solver->iterate->place.x;
   EqmPlace to;
 
   PetscFunctionBegin;
   PetscCall(EqmPlaceCreate(s->domain, &to));
-  PetscCall(EqmPlaceCopy(s->domain, &s->solver->place, &to));
+  PetscCall(EqmPlaceCopy(s->domain, &s->solver->iterate->place, &to));
   PetscCall(EqmPlaceShift(s->domain, c, &to));
   for (PetscInt k = 0; k + 3 < mesh->num_local; k++) {
     const PetscReal *const p = x + 3 * k, *const y = to.x + 3 * k;
@@ -75,8 +75,8 @@ static PetscErrorCode TestCentering(Setting *s, const PetscReal c[3])
   PetscFunctionBegin;
   PetscCall(EqmPlaceCreate(s->domain, &straight));
   PetscCall(EqmPlaceCreate(s->domain, &shifted));
-  PetscCall(EqmPlaceCopy(s->domain, &s->solver->place, &straight));
-  PetscCall(EqmPlaceCopy(s->domain, &s->solver->place, &shifted));
+  PetscCall(EqmPlaceCopy(s->domain, &s->solver->iterate->place, &straight));
+  PetscCall(EqmPlaceCopy(s->domain, &s->solver->iterate->place, &shifted));
   PetscCall(EqmPlaceShift(s->domain, c, &shifted));
   PetscCall(EqmPlaceCenter(s->domain, s->mass, &straight, &offset));
   PetscCall(EqmPlaceCenter(s->domain, s->mass, &shifted, &offset));
@@ -100,7 +100,7 @@ static PetscErrorCode TestHeavySpot(Setting *s)
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(mesh->num_owned, &mass));
   PetscCall(EqmPlaceCreate(s->domain, &place));
-  PetscCall(EqmPlaceCopy(s->domain, &s->solver->place, &place));
+  PetscCall(EqmPlaceCopy(s->domain, &s->solver->iterate->place, &place));
   for (PetscInt v = 0; v < mesh->num_owned; v++) mass[v] = .4 * s->mass[v] + (mesh->vertex_input[v] == 0 ? .6 : 0.);
   PetscCall(EqmPlaceCenter(s->domain, mass, &place, &offset));
   CHECK(offset > .1 && offset < 1., "offset %g", (double)offset);

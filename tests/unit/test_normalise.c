@@ -119,7 +119,7 @@ static PetscReal Off(EqmSolver solver, PetscInt count, const PetscInt *vertex, c
   for (PetscInt v = 0; v < solver->mesh->num_owned; v++) {
     for (PetscInt i = 0; i < count; i++) {
       if (solver->mesh->vertex_input[v] != vertex[i]) continue;
-      most = PetscMax(most, Distance(solver->place.x + 3 * v, points + 3 * i));
+      most = PetscMax(most, Distance(solver->iterate->place.x + 3 * v, points + 3 * i));
     }
   }
   return TestMax(solver->comm, most);
@@ -154,16 +154,16 @@ static PetscErrorCode TestArea(TestMesh *test)
   PetscCall(Solve(test, "", &centred));
   PetscCall(Solve(test, "-moebius area", &solver));
   PetscCall(PetscMalloc1(test->mesh->num_local_cells, &image));
-  PetscCall(EqmPlaceCreate(solver->domain, &place));
-  PetscCall(EqmAuthalicEnergy(centred->domain, &centred->place, image, &before, NULL));
-  PetscCall(EqmAuthalicEnergy(solver->domain, &solver->place, image, &least, NULL));
+  PetscCall(EqmPlaceCreate(solver->problem->domain, &place));
+  PetscCall(EqmAuthalicEnergy(centred->problem->domain, &centred->iterate->place, image, &before, NULL));
+  PetscCall(EqmAuthalicEnergy(solver->problem->domain, &solver->iterate->place, image, &least, NULL));
   CHECK(least < before, "area distortion %g, centred %g", (double)least, (double)before);
   for (PetscInt k = 0; k < 6; k++) {
     PetscReal c[3] = {0., 0., 0.};
     c[k / 2] = k % 2 ? -.003 : .003;
-    PetscCall(EqmPlaceCopy(solver->domain, &solver->place, &place));
-    PetscCall(EqmPlaceShift(solver->domain, c, &place));
-    PetscCall(EqmAuthalicEnergy(solver->domain, &place, image, &energy, NULL));
+    PetscCall(EqmPlaceCopy(solver->problem->domain, &solver->iterate->place, &place));
+    PetscCall(EqmPlaceShift(solver->problem->domain, c, &place));
+    PetscCall(EqmAuthalicEnergy(solver->problem->domain, &place, image, &energy, NULL));
     CHECK(energy > least, "a shift makes %g of %g", (double)energy, (double)least);
   }
   PetscCall(EqmPlaceDestroy(&place));
@@ -191,7 +191,8 @@ static PetscErrorCode TestAlignFile(TestMesh *test)
   PetscCall(Solve(test, "", &solver));
   for (PetscInt v = 0; v < test->mesh->num_owned; v++) {
     for (PetscInt i = 0; i < N; i++) {
-      if (test->mesh->vertex_input[v] == vertex[i]) EqmMoebiusApply(&map, solver->place.x + 3 * v, points + 3 * i);
+      if (test->mesh->vertex_input[v] == vertex[i])
+        EqmMoebiusApply(&map, solver->iterate->place.x + 3 * v, points + 3 * i);
     }
   }
   PetscCall(EqmSolverDestroy(&solver));

@@ -31,19 +31,19 @@ static PetscErrorCode TestGradient(void)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 400, 3, &test));
   PetscCall(TestStart(test.mesh, "disk", &solver));
-  PetscCall(EqmRiemannCreate(solver, &riemann));
-  PetscCall(EqmRiemannCreateVec(solver, riemann, &direction));
+  PetscCall(EqmRiemannCreate(solver->problem, &riemann));
+  PetscCall(EqmRiemannCreateVec(solver->problem, riemann, &direction));
   PetscCall(VecDuplicate(direction, &gradient));
-  PetscCall(EqmPlaceCreate(solver->domain, &place));
+  PetscCall(EqmPlaceCreate(solver->problem->domain, &place));
   PetscCall(RandomAngles(solver, riemann, 1, direction));
-  PetscCall(EqmRiemannMove(solver, riemann, &solver->place, .01, direction, &solver->place));
+  PetscCall(EqmRiemannMove(solver->problem, riemann, &solver->iterate->place, .01, direction, &solver->iterate->place));
   PetscCall(RandomAngles(solver, riemann, 2, direction));
-  PetscCall(EqmRiemannEnergy(solver, riemann, &solver->place, &energy, gradient));
+  PetscCall(EqmRiemannEnergy(solver->problem, riemann, &solver->iterate->place, &energy, gradient));
   PetscCall(VecDot(gradient, direction, &slope));
-  PetscCall(EqmRiemannMove(solver, riemann, &solver->place, h, direction, &place));
-  PetscCall(EqmRiemannEnergy(solver, riemann, &place, &ahead, gradient));
-  PetscCall(EqmRiemannMove(solver, riemann, &solver->place, -h, direction, &place));
-  PetscCall(EqmRiemannEnergy(solver, riemann, &place, &behind, gradient));
+  PetscCall(EqmRiemannMove(solver->problem, riemann, &solver->iterate->place, h, direction, &place));
+  PetscCall(EqmRiemannEnergy(solver->problem, riemann, &place, &ahead, gradient));
+  PetscCall(EqmRiemannMove(solver->problem, riemann, &solver->iterate->place, -h, direction, &place));
+  PetscCall(EqmRiemannEnergy(solver->problem, riemann, &place, &behind, gradient));
   CHECK_CLOSE((ahead - behind) / (2. * h), slope, 1e-6, PetscAbsReal(slope));
   CHECK(energy > .01, "energy %g", (double)energy);
   PetscCall(EqmPlaceDestroy(&place));
@@ -68,16 +68,17 @@ static PetscErrorCode TestCentre(void)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 400, 3, &test));
   PetscCall(TestStart(test.mesh, "disk", &solver));
-  PetscCall(EqmRiemannCreate(solver, &riemann));
-  PetscCall(EqmRiemannCentre(solver, riemann, &solver->place));
-  PetscCall(EqmRiemannCreateVec(solver, riemann, &gradient));
-  PetscCall(EqmRiemannEnergy(solver, riemann, &solver->place, &energy, gradient));
+  PetscCall(EqmRiemannCreate(solver->problem, &riemann));
+  PetscCall(EqmRiemannCentre(solver->problem, riemann, &solver->iterate->place));
+  PetscCall(EqmRiemannCreateVec(solver->problem, riemann, &gradient));
+  PetscCall(EqmRiemannEnergy(solver->problem, riemann, &solver->iterate->place, &energy, gradient));
   for (PetscInt c = 0; c < test.mesh->num_owned_cells; c++) {
     for (PetscInt k = 0; k < 6; k++)
-      centre[k % 2] += test.mesh->weight[c] / 3. * solver->place.x[2 * test.mesh->cells[3 * c + k / 2] + k % 2];
+      centre[k % 2] +=
+          test.mesh->weight[c] / 3. * solver->iterate->place.x[2 * test.mesh->cells[3 * c + k / 2] + k % 2];
   }
   for (PetscInt k = 0; k < 2; k++) CHECK_CLOSE(TestSum(PETSC_COMM_WORLD, centre[k]), 0., 1e-11, 1.);
-  PetscCall(EqmDomainBoundaryInOrder(solver->domain, &solver->place, &in_order));
+  PetscCall(EqmDomainBoundaryInOrder(solver->problem->domain, &solver->iterate->place, &in_order));
   CHECK(in_order, "centring spoilt the boundary's order");
   PetscCall(VecDestroy(&gradient));
   PetscCall(EqmRiemannDestroy(&riemann));
@@ -140,7 +141,7 @@ static PetscErrorCode CapError(PetscInt n, PetscBool flat, PetscReal *error, Eqm
   }
   radius = TestMax(PETSC_COMM_WORLD, radius);
   for (PetscInt k = 0; k < 2 * test.mesh->num_local; k++) exact[k] /= radius;
-  *error = TestRmsAfterRotation(test.mesh, solver->place.x, exact);
+  *error = TestRmsAfterRotation(test.mesh, solver->iterate->place.x, exact);
   PetscCall(EqmSolverGetMap(solver, test.soup, &map));
   *distortion = map->distortion;
   CHECK(map->status == EQM_STATUS_CONVERGED, "%s", map->message);

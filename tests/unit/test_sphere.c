@@ -1,6 +1,7 @@
 /* The sphere: moves and frames, the two measures of image triangles and the energy against differences along geodesics,
    the formulas of Sutti and Yueh (sphere, "001") as they must read, unfolding. */
 #include "support/testing.h"
+#include "unfold/unfold.h"
 #include "geometry/simplex.h"
 
 /* A map to the sphere that is far from area-preserving and does not fold. */
@@ -16,9 +17,9 @@ static PetscErrorCode Begin(const char *shape, PetscInt n, Setting *s)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 3, &s->test));
   PetscCall(TestSolve(s->test.mesh, "sphere", "-method fixed-point -max_it 0", &s->solver));
-  CHECK(s->solver->totals.folds == 0, "the linear map of %s folds", shape);
-  s->domain = s->solver->domain;
-  s->place = &s->solver->place;
+  CHECK(s->solver->iterate->totals.folds == 0, "the linear map of %s folds", shape);
+  s->domain = s->solver->problem->domain;
+  s->place = &s->solver->iterate->place;
   PetscFunctionReturn(0);
 }
 
@@ -368,7 +369,7 @@ static PetscErrorCode Unfold(Setting *s, PetscInt64 *before, PetscInt64 *after)
   PetscInt64 left;
 
   PetscFunctionBegin;
-  PetscCall(EqmSphereUnfold(s->solver, before, after));
+  PetscCall(EqmSphereUnfold(s->solver->problem, s->solver->iterate, before, after));
   PetscCall(PetscMalloc1(s->domain->mesh->num_local_cells, &det));
   PetscCall(EqmImageFolds(s->domain, s->place, det, &left));
   PetscCall(PetscFree(det));
@@ -418,7 +419,7 @@ static PetscErrorCode TestOrient(Setting *s)
   for (PetscInt v = 0; v < s->domain->mesh->num_local; v++) s->place->x[3 * v + 1] *= -1.;
   PetscCall(EqmImageFolds(s->domain, s->place, det, &folds));
   CHECK(folds == s->domain->mesh->num_cells, "%d folds of the mirrored map", (int)folds);
-  PetscCall(EqmSphereOrient(s->solver));
+  PetscCall(EqmSphereOrient(s->solver->problem, s->solver->iterate));
   PetscCall(EqmImageFolds(s->domain, s->place, det, &folds));
   CHECK(folds == 0, "%d folds of the map that was turned over", (int)folds);
   PetscCall(EqmPlaceMakeFrames(s->domain, s->place));

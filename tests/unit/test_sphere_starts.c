@@ -11,7 +11,7 @@ static PetscErrorCode Start(TestMesh *test, const char *options, EqmSolver *solv
   PetscCall(PetscSNPrintf(text, sizeof(text), "-method rgd -max_it 0 %s", options));
   PetscCall(TestSolve(test->mesh, "sphere", text, solver));
   for (PetscInt v = 0; v < test->mesh->num_local; v++) {
-    const PetscReal *const x = (*solver)->place.x + 3 * v;
+    const PetscReal *const x = (*solver)->iterate->place.x + 3 * v;
     CHECK_CLOSE(EqmDot3(x, x), 1., 1e-15, 1.);
   }
   PetscFunctionReturn(0);
@@ -25,7 +25,7 @@ static PetscErrorCode TestUnfolded(const char *shape, PetscInt n, const char *op
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 2, &test));
   PetscCall(Start(&test, options, &solver));
-  CHECK(solver->totals.folds == 0, "%s %s: %d folds", shape, options, (int)solver->totals.folds);
+  CHECK(solver->iterate->totals.folds == 0, "%s %s: %d folds", shape, options, (int)solver->iterate->totals.folds);
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);
@@ -48,9 +48,9 @@ static PetscErrorCode TestNormals(PetscBool inside_out)
   }
   PetscCall(TestMeshFromSoup(soup, &test));
   PetscCall(Start(&test, "-start normals", &solver));
-  CHECK(solver->totals.folds == 0, "%d folds", (int)solver->totals.folds);
+  CHECK(solver->iterate->totals.folds == 0, "%d folds", (int)solver->iterate->totals.folds);
   for (PetscInt k = 0; k < 3 * test.mesh->num_local; k++) {
-    const PetscReal x = (inside_out ? -1. : 1.) * solver->place.x[k];
+    const PetscReal x = (inside_out ? -1. : 1.) * solver->iterate->place.x[k];
     farthest = PetscMax(farthest, PetscAbsReal(x - test.mesh->position[k]));
   }
   CHECK(farthest < .06, "a normal is %g away from the place on the sphere", (double)farthest);
@@ -82,7 +82,7 @@ static PetscErrorCode TestCentered(const char *start)
   PetscCall(Start(&test, start, &solver));
   PetscCall(PetscMalloc1(test.mesh->num_owned, &mass));
   PetscCall(EqmMeshVertexWeights(test.mesh, mass));
-  PetscCall(EqmPlaceMassCenter(solver->domain, mass, &solver->place, center));
+  PetscCall(EqmPlaceMassCenter(solver->problem->domain, mass, &solver->iterate->place, center));
   CHECK(EqmDot3(center, center) < 1e-24, "the mass centre is off by %g",
         (double)PetscSqrtReal(EqmDot3(center, center)));
   PetscCall(PetscFree(mass));
@@ -100,8 +100,8 @@ static PetscErrorCode TestFixedPointEnds(void)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "head", 700, 1, &test));
   PetscCall(TestSolve(test.mesh, "sphere", "-method fixed-point -energy_rtol 0", &solver));
-  CHECK(solver->status == EQM_STATUS_CONVERGED && solver->iteration < 100, "status %d after %d iterations: %s",
-        (int)solver->status, (int)solver->iteration, solver->message);
+  CHECK(solver->status == EQM_STATUS_CONVERGED && solver->iterate->number < 100, "status %d after %d iterations: %s",
+        (int)solver->status, (int)solver->iterate->number, solver->message);
   CHECK(strstr(solver->message, "raise the energy"), "%s", solver->message);
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));

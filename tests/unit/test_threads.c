@@ -98,9 +98,9 @@ int main(int argc, char **argv)
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "hills", 5000, 1, &test));
   CHECK(test.mesh->num_blocks > 4, "%d blocks are too few to show anything", (int)test.mesh->num_blocks);
   PetscCall(TestStart(test.mesh, "disk", &solver));
-  PetscCall(Compute(solver->domain, &solver->place, 1, &one));
+  PetscCall(Compute(solver->problem->domain, &solver->iterate->place, 1, &one));
   for (int threads = 2; threads <= 4; threads += 2) {
-    PetscCall(Compute(solver->domain, &solver->place, threads, &many));
+    PetscCall(Compute(solver->problem->domain, &solver->iterate->place, threads, &many));
     PetscCall(Compare(test.mesh, &one, &many, threads));
     PetscCall(Reset(&many));
   }

@@ -47,19 +47,19 @@ static PetscErrorCode Compare(PetscInt n, const char *method, PetscReal *energy,
   PetscCall(PetscSNPrintf(options, sizeof(options), "%s -corners %d,%d,%d,%d", method, (int)c[0], (int)c[1], (int)c[2],
                           (int)c[3]));
   PetscCall(TestSolve(test.mesh, "square", options, &solver));
-  PetscCall(EqmPlaceCreate(solver->domain, &exact));
+  PetscCall(EqmPlaceCreate(solver->problem->domain, &exact));
   PetscCall(PetscMalloc1(test.mesh->num_local_cells, &a));
   for (PetscInt v = 0; v < test.mesh->num_local; v++) Unroll(test.mesh->position + 3 * v, exact.x + 2 * v);
-  PetscCall(EqmAuthalicEnergy(solver->domain, &exact, a, energy, NULL));
+  PetscCall(EqmAuthalicEnergy(solver->problem->domain, &exact, a, energy, NULL));
   for (PetscInt v = 0; v < test.mesh->num_owned; v++) {
-    const PetscReal squared =
-        PetscSqr(exact.x[2 * v] - solver->place.x[2 * v]) + PetscSqr(exact.x[2 * v + 1] - solver->place.x[2 * v + 1]);
+    const PetscReal squared = PetscSqr(exact.x[2 * v] - solver->iterate->place.x[2 * v]) +
+                              PetscSqr(exact.x[2 * v + 1] - solver->iterate->place.x[2 * v + 1]);
     sum += squared;
     most = PetscMax(most, squared);
   }
   *rms = PetscSqrtReal(TestSum(PETSC_COMM_WORLD, sum) / test.mesh->num_vertices);
   *largest = PetscSqrtReal(TestMax(PETSC_COMM_WORLD, most));
-  CHECK(solver->totals.folds == 0, "%d folds", (int)solver->totals.folds);
+  CHECK(solver->iterate->totals.folds == 0, "%d folds", (int)solver->iterate->totals.folds);
   PetscCall(PetscFree(a));
   PetscCall(EqmPlaceDestroy(&exact));
   PetscCall(EqmSolverDestroy(&solver));

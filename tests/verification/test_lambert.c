@@ -69,12 +69,12 @@ static PetscErrorCode TestSolverBeatsInterpolation(void)
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 1000, 1, &test));
   PetscCall(TestSolve(test.mesh, "disk", "-method lm", &solver));
-  PetscCall(EqmPlaceCreate(solver->domain, &place));
+  PetscCall(EqmPlaceCreate(solver->problem->domain, &place));
   PetscCall(PetscMalloc1(test.mesh->num_local_cells, &a));
   PlaceLambert(test.mesh, &place);
-  PetscCall(EqmAuthalicEnergy(solver->domain, &place, a, &exact, NULL));
-  CHECK(solver->totals.folds == 0 && solver->totals.energy < .1 * exact, "%g, Lambert %g",
-        (double)solver->totals.energy, (double)exact);
+  PetscCall(EqmAuthalicEnergy(solver->problem->domain, &place, a, &exact, NULL));
+  CHECK(solver->iterate->totals.folds == 0 && solver->iterate->totals.energy < .1 * exact, "%g, Lambert %g",
+        (double)solver->iterate->totals.energy, (double)exact);
   PetscCall(PetscFree(a));
   PetscCall(EqmPlaceDestroy(&place));
   PetscCall(EqmSolverDestroy(&solver));
@@ -187,14 +187,14 @@ static PetscErrorCode TestBalanced(PetscReal epsilon)
   for (int k = 0; k < 2; k++) {
     PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 500 << 2 * k, 1, &test));
     PetscCall(TestSolve(test.mesh, "disk", options, &solver));
-    PetscCall(DistanceFromRadial(test.mesh, solver->place.x, radius, &distance[k]));
-    PetscCall(DistanceFromRadial(test.mesh, solver->place.x, lambert, &from_lambert));
+    PetscCall(DistanceFromRadial(test.mesh, solver->iterate->place.x, radius, &distance[k]));
+    PetscCall(DistanceFromRadial(test.mesh, solver->iterate->place.x, lambert, &from_lambert));
     PetscCall(PetscPrintf(PETSC_COMM_WORLD,
                           "balance %g, %d vertices: %.2e from the radial minimiser, %.2e from Lambert's map (which is "
                           "up to %.2e from it)\n",
                           (double)epsilon, (int)test.mesh->num_vertices, (double)distance[k], (double)from_lambert,
                           (double)apart));
-    CHECK(solver->totals.folds == 0, "%d folds", (int)solver->totals.folds);
+    CHECK(solver->iterate->totals.folds == 0, "%d folds", (int)solver->iterate->totals.folds);
     PetscCall(EqmSolverDestroy(&solver));
     PetscCall(TestMeshDestroy(&test));
   }

@@ -31,9 +31,9 @@ static PetscErrorCode TestUniqueness(EqmMesh mesh)
 
   PetscFunctionBegin;
   for (int k = 0; k < 2; k++) PetscCall(TestSolve(mesh, "disk", options[k], &solver[k]));
-  const PetscReal distance = TestRmsAfterRotation(mesh, solver[0]->place.x, solver[1]->place.x);
+  const PetscReal distance = TestRmsAfterRotation(mesh, solver[0]->iterate->place.x, solver[1]->iterate->place.x);
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "balanced, two starts: %d and %d iterations, rms distance %.2e\n",
-                        (int)solver[0]->iteration, (int)solver[1]->iteration, (double)distance));
+                        (int)solver[0]->iterate->number, (int)solver[1]->iterate->number, (double)distance));
   CHECK(distance <= .006, "the two maps are %g apart", (double)distance);
   for (int k = 0; k < 2; k++) PetscCall(EqmSolverDestroy(&solver[k]));
   PetscFunctionReturn(0);

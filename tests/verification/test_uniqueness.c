@@ -13,10 +13,10 @@ static PetscErrorCode DistanceOfStarts(EqmMesh mesh, const char *method, const c
   for (int k = 0; k < 2; k++) {
     PetscCall(PetscSNPrintf(options, sizeof(options), "%s %s", method, k ? other : one));
     PetscCall(TestSolve(mesh, "disk", options, &solver[k]));
-    CHECK(solver[k]->totals.folds == 0, "%s: %d folds", options, (int)solver[k]->totals.folds);
+    CHECK(solver[k]->iterate->totals.folds == 0, "%s: %d folds", options, (int)solver[k]->iterate->totals.folds);
   }
-  *distance = TestRmsAfterRotation(mesh, solver[0]->place.x, solver[1]->place.x);
-  *energy = PetscMax(solver[0]->totals.energy, solver[1]->totals.energy);
+  *distance = TestRmsAfterRotation(mesh, solver[0]->iterate->place.x, solver[1]->iterate->place.x);
+  *energy = PetscMax(solver[0]->iterate->totals.energy, solver[1]->iterate->totals.energy);
   for (int k = 0; k < 2; k++) PetscCall(EqmSolverDestroy(&solver[k]));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,90 @@
+/* Landmarks from a CSV file. */
+#include "format/landmark_list.h"
+#include "format/table.h"
+#include <stdio.h>
+
+/* A whole number between 0 and count - 1 is wanted. */
+static PetscErrorCode CheckVertex(MPI_Comm comm, const char *file, PetscInt landmark, PetscReal value, const char *name,
+                                  PetscInt count)
+{
+  char text[32];
+
+  PetscFunctionBegin;
+  if (value >= 0. && value < count && value == PetscFloorReal(value)) PetscFunctionReturn(0);
+  (void)snprintf(text, sizeof(text), "%g", (double)value);
+  EqmFail(comm, EQM_ERR_USAGE, "%s: landmark %" PetscInt_FMT " names vertex %s of %s, which has 0 to %" PetscInt_FMT,
+          file, landmark + 1, text, name, count - 1);
+}
+
+/* A vertex has one counterpart. */
+static PetscErrorCode CheckTwice(MPI_Comm comm, const char *file, const EqmTable *table, PetscInt column,
+                                 const char *name)
+{
+  PetscInt *sorted;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(table->rows, &sorted));
+  for (PetscInt i = 0; i < table->rows; i++) sorted[i] = (PetscInt)table->values[table->columns * i + column];
+  PetscCall(PetscSortInt(table->rows, sorted));
+  for (PetscInt i = 1; i < table->rows; i++) {
+    if (sorted[i] != sorted[i - 1]) continue;
+    EqmFail(comm, EQM_ERR_USAGE, "%s: vertex %" PetscInt_FMT " of %s is a landmark twice", file, sorted[i], name);
+  }
+  PetscCall(PetscFree(sorted));
+  PetscFunctionReturn(0);
+}
+
+/* Fill the list from the rows that every rank has. */
+static PetscErrorCode Take(MPI_Comm comm, const char *file, PetscInt count_a, PetscInt count_b, const EqmTable *table,
+                           EqmLandmarkList *list)
+{
+  PetscFunctionBegin;
+  list->num = table->rows;
+  list->width = table->columns - 1;
+  PetscCall(PetscMalloc1(list->num, &list->vertex));
+  PetscCall(PetscMalloc1(list->width * list->num, &list->other));
+  for (PetscInt i = 0; i < list->num; i++) {
+    const PetscReal *const row = table->values + table->columns * i;
+    PetscCall(CheckVertex(comm, file, i, row[0], "A", count_a));
+    if (list->width == 1 && count_b >= 0) PetscCall(CheckVertex(comm, file, i, row[1], "B", count_b));
+    list->vertex[i] = (PetscInt)row[0];
+    for (PetscInt k = 0; k < list->width; k++) {
+      if (PetscIsInfOrNanReal(row[1 + k]))
+        EqmFail(comm, EQM_ERR_USAGE, "%s: landmark %" PetscInt_FMT " has a coordinate that is no finite number", file,
+                i + 1);
+      list->other[list->width * i + k] = row[1 + k];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLandmarkListRead(MPI_Comm comm, const char *file, PetscInt num_vertices_a, PetscInt num_vertices_b,
+                                   EqmLandmarkList *list)
+{
+  EqmTable table;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCall(EqmTableRead(comm, file, 2, 4,
+                         "a landmark is a vertex of A and a vertex of B (two numbers), or a vertex of A and a point "
+                         "(three or four numbers)",
+                         &table));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank != 0) PetscCall(PetscMalloc1(table.columns * table.rows, &table.values));
+  PetscCallMPI(MPI_Bcast(table.values, (PetscMPIInt)(table.columns * table.rows), MPIU_REAL, 0, comm));
+  PetscCall(Take(comm, file, num_vertices_a, num_vertices_b, &table, list));
+  PetscCall(CheckTwice(comm, file, &table, 0, "A"));
+  if (list->width == 1) PetscCall(CheckTwice(comm, file, &table, 1, "B"));
+  PetscCall(PetscFree(table.values));
+  PetscFunctionReturn(0);
+}
+
+/* Not collective. */
+PetscErrorCode EqmLandmarkListReset(EqmLandmarkList *list)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(list->vertex));
+  PetscCall(PetscFree(list->other));
+  list->num = 0;
+  PetscFunctionReturn(0);
+}

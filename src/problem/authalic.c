@@ -1,0 +1,45 @@
+/* The objectives of the area- and volume-preserving maps. */
+#include "problem/objective.h"
+#include "problem/barrier.h"
+
+PetscErrorCode EqmSumMeasures(EqmProblem problem, EqmIterate iterate)
+{
+  PetscReal *scratch;
+
+  PetscFunctionBegin;
+  PetscCall(EqmImageSum(problem->mesh, iterate->image, &iterate->totals));
+  if (!problem->domain->curved_image) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(problem->mesh->num_local_cells, &scratch));
+  PetscCall(EqmImageFolds(problem->domain, &iterate->place, scratch, &iterate->totals.folds));
+  PetscCall(PetscFree(scratch));
+  PetscFunctionReturn(0);
+}
+
+/* With the barrier against folds, while there is one. */
+static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, const EqmPlace *place, PetscReal *image,
+                               PetscReal *value, Vec gradient)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmAuthalicEnergy(problem->domain, place, image, value, gradient));
+  if (problem->barrier) PetscCall(EqmBarrierAdd(problem, place, image, value, gradient));
+  PetscFunctionReturn(0);
+}
+
+/* Near the minimum the Hessian is about 2/A L_S; on the sphere a tenth of the image's mass keeps the metric definite.
+ */
+static PetscErrorCode StretchMetric(EqmProblem problem, const EqmPlace *place, PetscReal *weights, PetscReal *mass,
+                                    PetscBool *with_mass)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_STRETCH, place, weights));
+  *with_mass = problem->domain->curved_image;
+  if (*with_mass) {
+    PetscCall(EqmImageMeasure(problem->domain, place, mass));
+    for (PetscInt c = 0; c < problem->mesh->num_local_cells; c++) mass[c] *= .1 * problem->domain->target_measure;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A poor map has ratios off by half, root mean square: that is none of equal areas. */
+const EqmObjective EqmObjectiveAuthalic = {
+    .sum = EqmSumMeasures, .poor_energy = .25, .evaluate = Evaluate, .metric = StretchMetric, .inverse_scale = .5};

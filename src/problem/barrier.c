@@ -1,0 +1,210 @@
+/* Folds of maps to the ball: a barrier beside the isovolumetric energy, after Garanzha, Kaporin, Kudryavtseva,
+   Protais, Ray and Sokolov, Foldover-free maps in 50 lines of code (2021):
+
+       T mean [ lambda (1 + J^2) / (2 chi) + sigma |F|^2 / (3 chi^(2/3)) ],   chi = (J + sqrt(eps^2 + J^2)) / 2
+
+   over the cells, J the ratio of a cell's volume to what it should be and F the derivative of the map from its shape;
+   and the first term over the cells between the origin and each boundary triangle, which keeps the boundary's own map
+   unfolded. T is the target's measure. Every cell counts alike: by volume, slivers would be given up. With eps -> 0
+   what is folded costs ever more, what is not folded stays so. */
+#include "problem/barrier.h"
+#include "geometry/simplex.h"
+
+/* Each facet's share of the surface; its owner, that of its lowest vertex, adds it up. */
+static PetscErrorCode MeasureFacets(EqmBarrier barrier, EqmMesh mesh)
+{
+  PetscReal area = 0.;
+  PetscInt count = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
+    const PetscInt *const v = mesh->boundary_facets + 3 * f;
+    PetscInt lowest = v[0];
+    for (PetscInt a = 1; a < 3; a++) lowest = mesh->global[v[a]] < mesh->global[lowest] ? v[a] : lowest;
+    barrier->counts[f] = (PetscBool)(lowest < mesh->num_owned);
+    barrier->share[f] = EqmArea3(mesh->position + 3 * v[0], mesh->position + 3 * v[1], mesh->position + 3 * v[2]);
+    if (!barrier->counts[f]) continue;
+    area += barrier->share[f];
+    count++;
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscCall(MPIU_Allreduce(&count, &barrier->num_facets, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) barrier->share[f] /= area;
+  PetscFunctionReturn(0);
+}
+
+/* Which facets belong to a cell: a facet's place in the file says which cell and face it is. */
+static PetscErrorCode FindFacets(EqmBarrier barrier, EqmMesh mesh)
+{
+  const PetscInt n = mesh->num_local_cells;
+  PetscInt *input, *cell;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(n, &input, n, &cell));
+  for (PetscInt c = 0; c < n; c++) {
+    input[c] = mesh->cell_input[c];
+    cell[c] = c;
+  }
+  PetscCall(PetscSortIntWithArray(n, input, cell));
+  for (PetscInt k = 0; k < 4 * n; k++) barrier->facet_of[k] = -1;
+  for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
+    PetscInt place;
+    PetscCall(PetscFindInt((PetscInt)(mesh->boundary_order[f] % mesh->num_cells), n, input, &place));
+    barrier->facet_of[4 * cell[place] + mesh->boundary_order[f] / mesh->num_cells] = f;
+  }
+  PetscCall(PetscFree2(input, cell));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmBarrierCreate(EqmProblem problem, const EqmPlace *place, EqmBarrier *out)
+{
+  const EqmMesh mesh = problem->mesh;
+  const PetscInt n = mesh->num_local_cells;
+  EqmBarrier barrier;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&barrier));
+  barrier->total = problem->domain->target_measure;
+  PetscCall(PetscMalloc3(mesh->num_boundary_facets, &barrier->share, mesh->num_boundary_facets, &barrier->counts, 4 * n,
+                         &barrier->facet_of));
+  PetscCall(PetscMalloc5(6 * n, &barrier->edge, 6 * n, &barrier->flow, n, &barrier->slope, 3 * mesh->num_owned,
+                         &barrier->ambient, 3 * mesh->num_owned, &barrier->part));
+  PetscCall(MeasureFacets(barrier, mesh));
+  PetscCall(FindFacets(barrier, mesh));
+  PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_COTANGENT, place, barrier->edge));
+  for (PetscInt c = 0; c < n; c++) {
+    const PetscReal length = PetscPowReal(mesh->weight[c] * barrier->total / mesh->cell_measure[c], 1. / 3.);
+    for (PetscInt e = 0; e < 6; e++) barrier->edge[6 * c + e] /= mesh->cell_measure[c] * PetscSqr(length);
+  }
+  *out = barrier;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmBarrierDestroy(EqmBarrier *barrier)
+{
+  PetscFunctionBegin;
+  if (!*barrier) PetscFunctionReturn(0);
+  PetscCall(PetscFree3((*barrier)->share, (*barrier)->counts, (*barrier)->facet_of));
+  PetscCall(PetscFree5((*barrier)->edge, (*barrier)->flow, (*barrier)->slope, (*barrier)->ambient, (*barrier)->part));
+  PetscCall(PetscFree(*barrier));
+  PetscFunctionReturn(0);
+}
+
+EqmBarrierTerm EqmBarrierOfCell(EqmBarrier barrier, PetscReal ratio, PetscReal stretch)
+{
+  const PetscReal eps = barrier->epsilon, root = PetscSqrtReal(eps * eps + ratio * ratio);
+  const PetscReal chi = ratio > 0. ? .5 * (ratio + root) : .5 * eps * eps / (root - ratio);
+  const PetscReal first = chi / root, second = .5 * eps * eps / (root * root * root), half = .5 * (1. + ratio * ratio);
+  const PetscReal power = PetscPowReal(chi, -2. / 3.), shape = barrier->shape_weight * power / 3.;
+  const PetscReal relative = first / chi, bend = second / chi;
+
+  return (
+      EqmBarrierTerm){.value = barrier->weight * half / chi + shape * stretch,
+                      .first = barrier->weight * (ratio - half * relative) / chi - 2. / 3. * shape * stretch * relative,
+                      .second = barrier->weight *
+                                    (1. - 2. * ratio * relative - half * bend + 2. * half * relative * relative) / chi +
+                                shape * stretch * (10. / 9. * relative * relative - 2. / 3. * bend),
+                      .by_stretch = shape};
+}
+
+PetscReal EqmBarrierStretch(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt cell)
+{
+  const PetscInt *const v = mesh->cells + 4 * cell;
+  PetscReal sum = 0.;
+
+  for (PetscInt e = 0; e < 6; e++) {
+    PetscInt i, j;
+    EqmCellEdge(4, e, &i, &j);
+    for (PetscInt k = 0; k < 3; k++) sum += barrier->edge[6 * cell + e] * PetscSqr(x[3 * v[i] + k] - x[3 * v[j] + k]);
+  }
+  return sum;
+}
+
+PetscReal EqmBarrierFacetRatio(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt facet)
+{
+  const PetscInt *const v = mesh->boundary_facets + 3 * facet;
+
+  return EqmHalfDet(x + 3 * v[0], x + 3 * v[1], x + 3 * v[2]) / (3. * barrier->share[facet] * barrier->total);
+}
+
+/* Cells: the value, slopes by the volumes and by the edges. */
+static PetscReal AddCells(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, const PetscReal *image)
+{
+  PetscReal sum = 0.;
+
+  for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
+    const EqmBarrierTerm term = EqmBarrierOfCell(barrier, image[c] / (mesh->weight[c] * barrier->total),
+                                                 EqmBarrierStretch(barrier, mesh, x, c));
+    barrier->slope[c] = term.first / (mesh->weight[c] * mesh->num_cells);
+    for (PetscInt e = 0; e < 6; e++)
+      barrier->flow[6 * c + e] = 2. * barrier->total * term.by_stretch * barrier->edge[6 * c + e] / mesh->num_cells;
+    if (c < mesh->num_owned_cells) sum += term.value;
+  }
+  return sum / mesh->num_cells;
+}
+
+/* The cells between the origin and the boundary's triangles: their gradients at owned vertices go to `ambient`. */
+static PetscReal AddBoundary(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscReal *ambient)
+{
+  PetscReal sum = 0.;
+
+  for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
+    const PetscInt *const v = mesh->boundary_facets + 3 * f;
+    const EqmBarrierTerm term = EqmBarrierOfCell(barrier, EqmBarrierFacetRatio(barrier, mesh, x, f), 0.);
+    if (barrier->counts[f]) sum += term.value;
+    for (PetscInt a = 0; a < 3; a++) {
+      PetscReal normal[3];
+      if (v[a] >= mesh->num_owned) continue;
+      EqmCross(x + 3 * v[(a + 1) % 3], x + 3 * v[(a + 2) % 3], normal);
+      for (PetscInt k = 0; k < 3; k++)
+        ambient[3 * v[a] + k] += term.first * normal[k] / (6. * barrier->share[f] * barrier->num_facets);
+    }
+  }
+  return sum / barrier->num_facets;
+}
+
+PetscErrorCode EqmBarrierAdd(EqmProblem problem, const EqmPlace *place, const PetscReal *image, PetscReal *value,
+                             Vec gradient)
+{
+  const EqmMesh mesh = problem->mesh;
+  const EqmBarrier barrier = problem->barrier;
+  PetscReal local, sum;
+  Vec part;
+
+  PetscFunctionBegin;
+  local = AddCells(barrier, mesh, place->x, image);
+  PetscCall(EqmImageGradient(problem->domain, place, barrier->slope, barrier->ambient));
+  PetscCall(EqmLaplacianApply(mesh, barrier->flow, 3, place->x, barrier->part));
+  for (PetscInt k = 0; k < 3 * mesh->num_owned; k++) barrier->ambient[k] += barrier->part[k];
+  local += AddBoundary(barrier, mesh, place->x, barrier->ambient);
+  PetscCall(MPIU_Allreduce(&local, &sum, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+  *value += barrier->total * sum;
+  if (!gradient) PetscFunctionReturn(0);
+  PetscCall(VecDuplicate(gradient, &part));
+  PetscCall(EqmDomainProject(problem->domain, place, barrier->ambient, part));
+  PetscCall(VecAXPY(gradient, 1., part));
+  PetscCall(VecDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmBarrierInspect(EqmProblem problem, EqmIterate iterate, PetscReal *least, PetscInt64 *folds)
+{
+  const EqmMesh mesh = problem->mesh;
+  const EqmBarrier barrier = problem->barrier;
+  PetscReal smallest = INFINITY;
+  PetscInt64 count = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
+    smallest = PetscMin(smallest, iterate->image[c] / (mesh->weight[c] * barrier->total));
+    count += !(iterate->image[c] > 0.);
+  }
+  for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
+    const PetscReal ratio = EqmBarrierFacetRatio(barrier, mesh, iterate->place.x, f);
+    smallest = PetscMin(smallest, ratio);
+    count += barrier->counts[f] && !(ratio > 0.);
+  }
+  PetscCall(MPIU_Allreduce(&smallest, least, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
+  PetscCall(MPIU_Allreduce(&count, folds, 1, MPIU_INT64, MPI_SUM, mesh->comm));
+  PetscFunctionReturn(0);
+}

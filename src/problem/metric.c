@@ -1,0 +1,247 @@
+/* A Laplacian, of most objectives the stretch Laplacian, as a metric for gradients. In the plane M = blkdiag(L_II,
+   L_BB) (000 section 3.2), degree of freedom by degree of freedom, angles and slides with the first coordinate. On the
+   sphere the gradient is a field in space: each coordinate is solved with the Laplacian and a mass, and the result
+   projected back (docs/methods.md, Published methods). In the ball no Laplacian knows that the energy is stiff for
+   compression and soft for everything else: there the metric is the Gauss-Newton matrix with a little of L_V, coupled
+   over all coordinates (docs/methods.md, Solids). */
+#include "problem/metric.h"
+#include "energy/cellframe.h"
+#include "problem/objective.h"
+#include "geometry/simplex.h"
+#include "problem/barrier.h"
+
+struct _p_EqmMetric {
+  EqmProblem problem;
+  PetscReal *weights;
+  EqmPlace at;            /* the map that the present factor belongs to */
+  EqmLinear gauss_newton; /* in the ball, with vertices in frames; else NULL, and there is a Laplacian, below */
+  EqmPlace coarse_at;     /* the map that the coarse spaces of multigrid belong to, and whether they serve on */
+  PetscBool keeps_coarse;
+  PetscReal *mass, *columns, *ambient;
+  signed char *group;
+};
+
+/* A vertex in spherical coordinates has no frame that a factor could turn with. */
+static PetscBool NeedsGaussNewton(EqmDomain domain)
+{
+  return (PetscBool)(domain->measure == EQM_MEASURE_VOLUME && !domain->spherical_coordinates);
+}
+
+/* What a Laplacian's matrix and its columns of right-hand sides take. */
+static PetscErrorCode CreateLaplacian(EqmProblem problem, EqmMetric metric)
+{
+  const EqmMesh mesh = problem->mesh;
+  const PetscInt dim = problem->domain->dim;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(mesh->num_local_cells, &metric->mass, dim * mesh->num_owned, &metric->columns,
+                         dim * mesh->num_local, &metric->ambient, mesh->num_local, &metric->group));
+  for (PetscInt v = 0; v < mesh->num_local; v++) {
+    metric->group[v] = problem->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricCreate(EqmProblem problem, EqmMetric *out)
+{
+  const EqmMesh mesh = problem->mesh;
+  EqmMetric metric;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&metric));
+  metric->problem = problem;
+  PetscCall(PetscMalloc1(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &metric->weights));
+  PetscCall(EqmPlaceCreate(problem->domain, &metric->at));
+  if (NeedsGaussNewton(problem->domain)) {
+    PetscCall(EqmPlaceCreate(problem->domain, &metric->coarse_at));
+    PetscCall(EqmProblemCreateLinear(problem, EQM_MATRIX_METRIC, &metric->gauss_newton));
+  } else {
+    PetscCall(CreateLaplacian(problem, metric));
+  }
+  *out = metric;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
+{
+  PetscFunctionBegin;
+  if (!*metric) PetscFunctionReturn(0);
+  PetscCall(EqmPlaceDestroy(&(*metric)->at));
+  PetscCall(EqmPlaceDestroy(&(*metric)->coarse_at));
+  PetscCall(PetscFree((*metric)->weights));
+  PetscCall(PetscFree4((*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
+  PetscCall(EqmLinearDestroy(&(*metric)->gauss_newton));
+  PetscCall(PetscFree(*metric));
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  EqmProblem problem;
+  const EqmPlace *place;
+  const PetscReal *image;   /* measures there; NULL without a barrier */
+  const PetscReal *weights; /* of L_V */
+} GaussNewton;
+
+/* Of L_V in the metric of the ball. */
+static const PetscReal l_v_share = .05;
+
+/* Half of the energy's Hessian times A without the curvature of the cells, da da^T / w, and a share of L_V in each
+   coordinate, which keeps it definite. */
+static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
+{
+  const GaussNewton *const gn = context;
+  const EqmDomain domain = gn->problem->domain;
+  const PetscInt *const v = domain->mesh->cells + 4 * cell;
+  const PetscReal *const x = gn->place->x, *const p[] = {x + 3 * v[0], x + 3 * v[1], x + 3 * v[2], x + 3 * v[3]};
+  PetscReal gradient[4][3], laplacian[4][4];
+  EqmCellFrame frame;
+
+  EqmCellFrameFind(domain, gn->place, cell, &frame);
+  for (PetscInt k = 0; k < frame.count * frame.count; k++) matrix[k] = 0.;
+  EqmVolumeGradient(p, gradient[0]);
+  EqmCellFrameAddSquare(&frame, 1. / domain->mesh->weight[cell], gradient, matrix);
+  EqmCellLaplacian(4, gn->weights + 6 * cell, laplacian);
+  EqmCellFrameAddLaplacian(&frame, l_v_share, laplacian, matrix);
+  if (gn->image) EqmBarrierAddMatrix(gn->problem, gn->place, gn->image, cell, &frame, matrix);
+}
+
+/* Without compression, and the smoothest that there are. Rotations cost a third more per cycle and save less. */
+static void Translation(PetscInt which, const PetscReal *x, PetscReal *velocity)
+{
+  (void)x;
+  for (PetscInt k = 0; k < 3; k++) velocity[k] = k == which ? 1. : 0.;
+}
+
+static PetscErrorCode FactorGaussNewton(EqmMetric metric, const EqmPlace *place)
+{
+  const EqmProblem problem = metric->problem;
+  GaussNewton gn = {.problem = problem, .place = place, .weights = metric->weights};
+  PetscReal *image = NULL;
+  PetscBool success;
+
+  PetscFunctionBegin;
+  if (problem->barrier) {
+    PetscCall(PetscMalloc1(problem->mesh->num_local_cells, &image));
+    PetscCall(EqmImageMeasure(problem->domain, place, image));
+    gn.image = image;
+  }
+  PetscCall(EqmLinearKeepCoarseSpaces(metric->gauss_newton, metric->keeps_coarse));
+  PetscCall(EqmProblemSetFields(problem, place, metric->gauss_newton, 3, Translation));
+  PetscCall(EqmLinearFactor(metric->gauss_newton, CellGaussNewton, &gn, 1., &success));
+  PetscCall(PetscFree(image));
+  PetscCheck(success, problem->comm, PETSC_ERR_MAT_CH_ZRPVT, "no factor of the metric: the map is not finite");
+  PetscFunctionReturn(0);
+}
+
+/* Factor what belongs to a map. The barrier's matrices change too much for common coarse spaces. */
+static PetscErrorCode FactorAt(EqmMetric metric, const EqmPlace *place)
+{
+  const EqmProblem problem = metric->problem;
+  const PetscBool fixed = problem->objective->fixed_metric;
+  PetscBool with_mass;
+
+  PetscFunctionBegin;
+  if (!fixed || !problem->holds_fixed_metric) {
+    PetscCall(problem->objective->metric(problem, place, metric->weights, metric->mass, &with_mass));
+    if (metric->gauss_newton)
+      PetscCall(FactorGaussNewton(metric, place));
+    else
+      PetscCall(EqmGroupFactor(problem, metric->weights, metric->group, with_mass ? metric->mass : NULL));
+    problem->holds_fixed_metric = fixed;
+  }
+  metric->keeps_coarse = (PetscBool)(metric->gauss_newton && !problem->barrier);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricRefresh(EqmMetric metric, const EqmPlace *place)
+{
+  const EqmDomain domain = metric->problem->domain;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCopy(domain, place, &metric->at));
+  if (metric->gauss_newton && !metric->keeps_coarse) PetscCall(EqmPlaceCopy(domain, &metric->at, &metric->coarse_at));
+  PetscCall(FactorAt(metric, &metric->at));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricState(EqmMetric metric, EqmState state)
+{
+  const EqmDomain domain = metric->problem->domain;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStatePlace(state, domain, "metric_of", &metric->at));
+  if (metric->gauss_newton) PetscCall(EqmStatePlace(state, domain, "coarse_spaces_of", &metric->coarse_at));
+  if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
+  metric->keeps_coarse = PETSC_FALSE;
+  if (metric->gauss_newton && EqmLinearHasCoarseSpaces(metric->gauss_newton))
+    PetscCall(FactorAt(metric, &metric->coarse_at));
+  PetscCall(FactorAt(metric, &metric->at));
+  PetscFunctionReturn(0);
+}
+
+/* One column per coordinate in space. */
+static PetscErrorCode ApplyInSpace(EqmMetric metric, const EqmPlace *place, Vec g, Vec h)
+{
+  const EqmProblem problem = metric->problem;
+  const PetscInt n = problem->mesh->num_owned, dim = problem->domain->dim;
+
+  PetscFunctionBegin;
+  PetscCall(EqmDomainExpand(problem->domain, place, g, metric->ambient));
+  for (PetscInt k = 0; k < dim * n; k++) metric->columns[(k % dim) * n + k / dim] = metric->ambient[k];
+  PetscCall(EqmGroupApply(problem, dim, metric->columns));
+  for (PetscInt k = 0; k < dim * n; k++) metric->ambient[k] = metric->columns[(k % dim) * n + k / dim];
+  PetscCall(EqmDomainProject(problem->domain, place, metric->ambient, h));
+  PetscFunctionReturn(0);
+}
+
+/* One column per degree of freedom of a vertex. */
+static PetscErrorCode ApplyByDof(EqmMetric metric, Vec g, Vec h)
+{
+  const EqmProblem problem = metric->problem;
+  const EqmDomain domain = problem->domain;
+  const PetscInt n = problem->mesh->num_owned;
+  const PetscScalar *from;
+  PetscScalar *to;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(g, &from));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < domain->dim; k++) {
+      metric->columns[k * n + v] = k < domain->dof_count[v] ? from[domain->dof_start[v] - domain->dof_first + k] : 0.;
+    }
+  }
+  PetscCall(VecRestoreArrayRead(g, &from));
+  PetscCall(EqmGroupApply(problem, domain->dim, metric->columns));
+  PetscCall(VecGetArrayWrite(h, &to));
+  for (PetscInt v = 0; v < n; v++) {
+    for (PetscInt k = 0; k < domain->dof_count[v]; k++)
+      to[domain->dof_start[v] - domain->dof_first + k] = metric->columns[k * n + v];
+  }
+  PetscCall(VecRestoreArrayWrite(h, &to));
+  PetscFunctionReturn(0);
+}
+
+/* All at once: the matrix belongs to A/2 times the Hessian. */
+static PetscErrorCode ApplyCoupled(EqmMetric metric, Vec g, Vec h)
+{
+  PetscScalar *array;
+
+  PetscFunctionBegin;
+  if (g != h) PetscCall(VecCopy(g, h));
+  PetscCall(VecGetArray(h, &array));
+  PetscCall(EqmLinearApply(metric->gauss_newton, 1, array, array));
+  PetscCall(VecRestoreArray(h, &array));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMetricApply(EqmMetric metric, const EqmPlace *place, Vec g, Vec h)
+{
+  PetscFunctionBegin;
+  if (metric->gauss_newton)
+    PetscCall(ApplyCoupled(metric, g, h));
+  else if (metric->problem->domain->curved_image)
+    PetscCall(ApplyInSpace(metric, place, g, h));
+  else
+    PetscCall(ApplyByDof(metric, g, h));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,166 @@
+/* What a checkpoint holds. */
+#include "solver/solver_private.h"
+#include "store/keptmesh.h"
+
+enum { HISTORY_COLUMNS = 10 };
+
+static void PackRow(const EqmHistoryRow *row, PetscReal objective, PetscReal *packed)
+{
+  const PetscReal values[HISTORY_COLUMNS] = {row->energy,
+                                             row->sd,
+                                             (PetscReal)row->folds,
+                                             row->step,
+                                             row->gradient_norm,
+                                             (PetscReal)row->work.evaluations,
+                                             (PetscReal)row->work.factorizations,
+                                             (PetscReal)row->work.coupled_factorizations,
+                                             (PetscReal)row->work.solves,
+                                             row->seconds};
+
+  for (PetscInt k = 0; k < HISTORY_COLUMNS; k++) packed[k] = values[k];
+  packed[HISTORY_COLUMNS] = objective;
+}
+
+static EqmHistoryRow UnpackRow(PetscInt iteration, const PetscReal *packed)
+{
+  return (EqmHistoryRow){.iteration = iteration,
+                         .energy = packed[0],
+                         .sd = packed[1],
+                         .folds = (PetscInt64)packed[2],
+                         .step = packed[3],
+                         .gradient_norm = packed[4],
+                         .work = {(PetscInt64)packed[5], (PetscInt64)packed[6], (PetscInt64)packed[7],
+                                  (PetscInt64)packed[8]},
+                         .seconds = packed[9]};
+}
+
+/* Row after row, the objective last; the columns are told in an attribute. */
+static PetscErrorCode VisitHistory(EqmState state, EqmSolver solver)
+{
+  char columns[] = "energy, sd, folds, step, gradient_norm, evaluations, factorizations, coupled_factorizations, "
+                   "solves, seconds, objective";
+  PetscReal *packed;
+  PetscInt rows = solver->num_history;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStateText(state, "history_columns", columns, sizeof(columns)));
+  PetscCall(EqmStateInt(state, "num_history", &rows));
+  PetscCall(PetscMalloc1((HISTORY_COLUMNS + 1) * rows, &packed));
+  for (PetscInt k = 0; k < solver->num_history; k++)
+    PackRow(&solver->history[k], solver->objectives[k], packed + (HISTORY_COLUMNS + 1) * k);
+  PetscCall(EqmStateReals(state, "history", (HISTORY_COLUMNS + 1) * rows, packed));
+  if (EqmStateIsLoading(state)) {
+    PetscCall(EqmHistoryReserve(solver, rows));
+    for (PetscInt k = 0; k < rows; k++) {
+      solver->history[k] = UnpackRow(k, packed + (HISTORY_COLUMNS + 1) * k);
+      solver->objectives[k] = packed[(HISTORY_COLUMNS + 1) * k + HISTORY_COLUMNS];
+    }
+    solver->num_history = rows;
+  }
+  PetscCall(PetscFree(packed));
+  PetscFunctionReturn(0);
+}
+
+/* A run of another problem must not go on from here. */
+static PetscErrorCode VisitProblem(EqmState state, EqmSolver solver)
+{
+  const EqmSolverSettings *const set = &solver->settings;
+  char corners[128] = "";
+
+  PetscFunctionBegin;
+  if (set->has_corners) {
+    PetscCall(PetscSNPrintf(corners, sizeof(corners),
+                            "%" PetscInt_FMT ",%" PetscInt_FMT ",%" PetscInt_FMT ",%" PetscInt_FMT, set->corners[0],
+                            set->corners[1], set->corners[2], set->corners[3]));
+  }
+  PetscCall(EqmStateGroup(state, ""));
+  PetscCall(EqmStateSameInt(state, "the checksum of mesh and density", solver->mesh->identity));
+  PetscCall(EqmStateSameText(state, "command", solver->target));
+  PetscCall(EqmStateSameText(state, "method", solver->defaults.name));
+  PetscCall(EqmStateSameReal(state, "-balance", PetscMax(set->balance, 0.)));
+  PetscCall(EqmStateSameText(state, "-corners", corners));
+  PetscCall(EqmStateSameInt(state, "the number of landmarks", solver->problem->landmarks.num_total));
+  PetscCall(EqmStateSameReal(state, "the landmarks' weight", solver->problem->landmarks.lambda));
+  PetscFunctionReturn(0);
+}
+
+/* Clocks go on from where they stood. */
+static PetscErrorCode VisitSeconds(EqmState state, EqmSolver solver)
+{
+  PetscReal phases[EQM_NUM_PHASES], events[EQM_NUM_EVENTS], total;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLedgerGetSeconds(solver->mesh->ledger, phases, events, &total));
+  PetscCall(EqmStateReal(state, "seconds", &total));
+  PetscCall(EqmStateReals(state, "phase_seconds", EQM_NUM_PHASES, phases));
+  PetscCall(EqmStateReals(state, "event_seconds", EQM_NUM_EVENTS, events));
+  if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
+  PetscCall(EqmLedgerContinue(solver->mesh->ledger, phases, events, total));
+  PetscFunctionReturn(0);
+}
+
+/* The copy of the mesh that a run left beside its checkpoint, for whoever goes on without the mesh itself. */
+static PetscErrorCode VisitKeptMesh(EqmState state, EqmSolver solver)
+{
+  char copy[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(copy, solver->checkpoints.kept_mesh, sizeof(copy)));
+  PetscCall(EqmStateText(state, EQM_KEPT_MESH, copy, sizeof(copy)));
+  PetscFunctionReturn(0);
+}
+
+/* All that can be known before the method is set up. */
+PetscErrorCode EqmCheckpointVisitMap(EqmState state, EqmSolver solver)
+{
+  PetscInt status = (PetscInt)solver->status;
+
+  PetscFunctionBegin;
+  PetscCall(VisitProblem(state, solver));
+  PetscCall(VisitKeptMesh(state, solver));
+  PetscCall(EqmStatePlace(state, solver->problem->domain, "map", &solver->iterate->place));
+  PetscCall(EqmStateGroup(state, "solver"));
+  PetscCall(EqmStateInt(state, "iteration", &solver->iterate->number));
+  PetscCall(EqmStateInt64(state, "unfolded_from", &solver->iterate->unfolded_from));
+  PetscCall(EqmStateInt64(state, "unfolded_to", &solver->iterate->unfolded_to));
+  PetscCall(EqmStateBool(state, "finished", &solver->checkpoints.finished));
+  PetscCall(EqmStateInt(state, "status", &status));
+  PetscCall(EqmStateText(state, "message", solver->message, sizeof(solver->message)));
+  solver->status = (EqmStatus)status;
+  PetscCall(VisitHistory(state, solver));
+  PetscCall(VisitSeconds(state, solver));
+  PetscFunctionReturn(0);
+}
+
+/* The rest; what set_up has done to the map, and the state of the method to figures and counters, is set right. */
+PetscErrorCode EqmCheckpointVisitMethod(EqmState state, EqmSolver solver)
+{
+  EqmWork *work;
+
+  PetscFunctionBegin;
+  if (EqmStateIsLoading(state)) {
+    PetscCall(EqmStateGroup(state, ""));
+    PetscCall(EqmStatePlace(state, solver->problem->domain, "map", &solver->iterate->place));
+    PetscCall(EqmIterateUpdate(solver->problem, solver->iterate));
+  }
+  PetscCall(EqmStateGroup(state, solver->defaults.name));
+  PetscCall(EqmMethodVisitState(solver->method, solver->iterate, state));
+  PetscCall(EqmStateGroup(state, "solver"));
+  PetscCall(EqmStateReal(state, "objective", &solver->iterate->objective));
+  PetscCall(EqmStateReal(state, "gradient_norm", &solver->iterate->gradient_norm));
+  PetscCall(EqmStateReal(state, "step_length", &solver->iterate->step_length));
+  PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
+  PetscCall(EqmStateInt64(state, "evaluations", &work->evaluations));
+  PetscCall(EqmStateInt64(state, "factorizations", &work->factorizations));
+  PetscCall(EqmStateInt64(state, "coupled_factorizations", &work->coupled_factorizations));
+  PetscCall(EqmStateInt64(state, "solves", &work->solves));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmCheckpointVisit(EqmState state, void *context)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmCheckpointVisitMap(state, context));
+  PetscCall(EqmCheckpointVisitMethod(state, context));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,200 @@
+/* The table of formulations: energy x domain, and the methods that solve them. */
+#include "solver/solver_private.h"
+#include "unfold/unfold.h"
+#include <string.h>
+
+/* ---- domains */
+static PetscErrorCode CreateDisk(EqmSolver solver, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmDomainCreateDisk(solver->mesh, domain));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateSquare(EqmSolver solver, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCall(
+      EqmDomainCreateSquare(solver->mesh, solver->settings.has_corners ? solver->settings.corners : NULL, domain));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateSphere(EqmSolver solver, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmDomainCreateSphere(solver->mesh, domain));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateBall(EqmSolver solver, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmDomainCreateBall(solver->mesh, domain));
+  if (solver->defaults.spherical_coordinates) PetscCall(EqmDomainTakeSphericalCoordinates(*domain));
+  PetscFunctionReturn(0);
+}
+
+/* ---- settings of methods */
+static PetscErrorCode ConfigureConformalLbfgs(EqmMethod lbfgs)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLbfgsSetMemory(lbfgs, 8));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ConfigureBallLbfgs(EqmMethod lbfgs)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLbfgsSetMemory(lbfgs, 20));
+  PetscCall(EqmLbfgsSetLineSearch(lbfgs, EQM_SEARCH_WOLFE));
+  PetscFunctionReturn(0);
+}
+
+/* ---- methods: name, registered as, first map, -max_it, -energy_rtol, -ratio_tol, -gradient_tol, settings */
+static const EqmMethodDefaults in_plane[] = {
+    {"lm", "lm", "guarded", 60, .05, 1e-4, 0., NULL, PETSC_FALSE},
+    {"fixed-point", "fixed-point", "harmonic", 100, 1e-4, 0., 0., NULL, PETSC_FALSE},
+    {"ncg", "ncg", "fixed-point", 100, 1e-4, 0., 0., NULL, PETSC_FALSE},
+    {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, PETSC_FALSE},
+    {"rgd", "rgd", "guarded", 100, 1e-6, 0., 0., NULL, PETSC_FALSE},
+};
+
+static const EqmMethodDefaults on_sphere[] = {
+    {"lm", "lm", "guarded", 60, .05, 1e-4, 0., NULL, PETSC_FALSE},
+    {"fixed-point", "fixed-point", "linear", 100, 1e-4, 0., 0., NULL, PETSC_FALSE},
+    {"ncg", "ncg", "guarded", 100, 1e-4, 0., 0., NULL, PETSC_FALSE},
+    {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, PETSC_FALSE},
+    {"rgd", "rgd", "descending", 100, 1e-6, 0., 0., NULL, PETSC_FALSE},
+};
+
+static const EqmMethodDefaults conformal_in_disk[] = {
+    {"riemann", "riemann", "arc-length", 100, 0., 0., 1e-5, NULL, PETSC_FALSE},
+    {"qiem", "covering", "harmonic", 500, 0., 0., 0., NULL, PETSC_FALSE},
+};
+
+static const EqmMethodDefaults conformal_on_sphere[] = {
+    {"lbfgs", "lbfgs", "conformal", 100, 0., 0., 1e-5, ConfigureConformalLbfgs, PETSC_FALSE},
+    {"qiem", "qiem", "normals", 500, 0., 0., 0., NULL, PETSC_FALSE},
+    {"euler-explicit", "euler-explicit", "gauss", 10000, 0., 0., 0., NULL, PETSC_FALSE},
+    {"euler-implicit", "euler-implicit", "gauss", 500, 0., 0., 0., NULL, PETSC_FALSE},
+};
+
+static const EqmMethodDefaults in_ball[] = {
+    {"lbfgs", "lbfgs", "fixed-point", 500, 1e-8, 0., 0., ConfigureBallLbfgs, PETSC_FALSE},
+    {"newton", "newton", "fixed-point", 300, 1e-9, 0., 0., NULL, PETSC_FALSE},
+    {"fixed-point", "fixed-point", "harmonic", 500, 1e-6, 0., 0., NULL, PETSC_FALSE},
+    {"ncg", "ncg", "fixed-point", 500, 1e-6, 0., 0., NULL, PETSC_TRUE},
+};
+
+#define METHODS(list) .methods = (list), .num_methods = sizeof(list) / sizeof((list)[0])
+
+static const EqmFormulation formulations[] = {
+    {.target = "disk",
+     .domain = "disk",
+     .create_domain = CreateDisk,
+     .objective = &EqmObjectiveAuthalic,
+     .starts = EQM_STARTS_PLANE,
+     .takes_balance = PETSC_TRUE,
+     METHODS(in_plane)},
+    {.target = "square",
+     .domain = "square",
+     .create_domain = CreateSquare,
+     .objective = &EqmObjectiveAuthalic,
+     .starts = EQM_STARTS_PLANE,
+     .takes_balance = PETSC_TRUE,
+     METHODS(in_plane)},
+    {.target = "sphere",
+     .domain = "sphere",
+     .create_domain = CreateSphere,
+     .objective = &EqmObjectiveAuthalic,
+     .unfold = EqmSphereUnfold,
+     .starts = EQM_STARTS_SPHERE,
+     METHODS(on_sphere)},
+    {.target = "conformal",
+     .domain = "disk",
+     .create_domain = CreateDisk,
+     .objective = &EqmObjectiveConformal,
+     .unfold = EqmDiskUnfold,
+     .starts = EQM_STARTS_PLANE,
+     METHODS(conformal_in_disk)},
+    {.target = "conformal",
+     .domain = "sphere",
+     .create_domain = CreateSphere,
+     .objective = &EqmObjectiveConformal,
+     .unfold = EqmSphereUnfold,
+     .finish = EqmConformalFinish,
+     .starts = EQM_STARTS_SPHERE,
+     METHODS(conformal_on_sphere)},
+    {.target = "ball",
+     .domain = "ball",
+     .create_domain = CreateBall,
+     .objective = &EqmObjectiveAuthalic,
+     .unfold = EqmBallUnfold,
+     .starts = EQM_STARTS_BALL,
+     METHODS(in_ball)},
+};
+enum { NUM_FORMULATIONS = sizeof(formulations) / sizeof(formulations[0]) };
+
+const EqmFormulation *EqmFormulationNext(const char *target, const EqmFormulation *formulation)
+{
+  for (PetscInt k = formulation ? (PetscInt)(formulation - formulations) + 1 : 0; k < NUM_FORMULATIONS; k++) {
+    if (!strcmp(formulations[k].target, target)) return &formulations[k];
+  }
+  return NULL;
+}
+
+/* Of several rows of a target the closed surfaces' is that of the sphere. Whether the mesh is of the target's kind is
+   the diagnosis's business, and the domain's. */
+PetscErrorCode EqmFormulationFind(MPI_Comm comm, const char *target, EqmMesh mesh, const EqmFormulation **formulation)
+{
+  const EqmFormulation *const first = EqmFormulationNext(target, NULL);
+  const EqmFormulation *const second = first ? EqmFormulationNext(target, first) : NULL;
+
+  PetscFunctionBegin;
+  if (!first) EqmFail(comm, EQM_ERR_USAGE, "there is no target '%s'", target);
+  *formulation = mesh && second && mesh->num_boundary_vertices == 0 ? second : first;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmFormulationFindMethod(MPI_Comm comm, const EqmFormulation *formulation, const char *name,
+                                        EqmMethodDefaults *defaults)
+{
+  char names[EQM_MESSAGE_MAX];
+  PetscBool registered;
+
+  PetscFunctionBegin;
+  *defaults = formulation->methods[0];
+  if (!strcmp(name, "auto")) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < formulation->num_methods; k++) {
+    *defaults = formulation->methods[k];
+    if (!strcmp(defaults->name, name)) PetscFunctionReturn(0);
+  }
+  PetscCall(EqmMethodIsForeign(name, &registered));
+  if (!registered) {
+    PetscCall(EqmFormulationMethodNames(formulation->target, formulation, names, sizeof(names)));
+    EqmFail(comm, EQM_ERR_USAGE, "-method %s: there is no such method for the %s; choose one of %s", name,
+            formulation->domain, names);
+  }
+  *defaults = (EqmMethodDefaults){.name = name, .method = name, .start = formulation->methods[0].start, .max_it = 100};
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmFormulationMethodNames(const char *target, const EqmFormulation *only, char *text, size_t length)
+{
+  const char *seen[64];
+  PetscInt num_seen = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(text, "auto", length));
+  for (const EqmFormulation *f = EqmFormulationNext(target, NULL); f; f = EqmFormulationNext(target, f)) {
+    for (PetscInt k = 0; k < f->num_methods && (!only || f == only); k++) {
+      PetscInt s = 0;
+      while (s < num_seen && strcmp(seen[s], f->methods[k].name)) s++;
+      if (s < num_seen) continue;
+      seen[num_seen++] = f->methods[k].name;
+      PetscCall(PetscStrlcat(text, ", ", length));
+      PetscCall(PetscStrlcat(text, f->methods[k].name, length));
+    }
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,48 @@
+/* What a target means for a mesh: domain, objective, first maps, methods and their settings. One table, formulation.c.
+ */
+#ifndef EQM_FORMULATION_H
+#define EQM_FORMULATION_H
+
+#include <equimap/solver.h>
+#include "method/method.h"
+#include "start/start.h"
+
+/* A method as it is set for a formulation unless the user says otherwise. */
+typedef struct {
+  const char *name;   /* of -method */
+  const char *method; /* as it is registered */
+  const char *start;
+  PetscInt max_it;
+  PetscReal energy_rtol, ratio_tol, gradient_tol;
+  PetscErrorCode (*configure)(EqmMethod); /* settings of the method's own; NULL: as it is created */
+  PetscBool spherical_coordinates;        /* ball: the boundary moves by its angles */
+} EqmMethodDefaults;
+
+typedef struct {
+  const char *target, *domain; /* of the tables in mesh/target.c; several rows of a target are told apart by the mesh */
+  PetscErrorCode (*create_domain)(EqmSolver, EqmDomain *);
+  const EqmObjective *objective;
+  PetscErrorCode (*unfold)(EqmProblem, EqmIterate, PetscInt64 *before, PetscInt64 *after); /* NULL: cannot */
+  PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
+  EqmStartFamily starts;
+  PetscBool takes_balance;          /* -balance has a meaning */
+  const EqmMethodDefaults *methods; /* the first is -method auto */
+  PetscInt num_methods;
+} EqmFormulation;
+
+/* The formulation of a target for a mesh. Without a mesh (NULL) the target's first. Errors: EQM_ERR_USAGE. Collective.
+ */
+PETSC_INTERN PetscErrorCode EqmFormulationFind(MPI_Comm comm, const char *target, EqmMesh mesh,
+                                               const EqmFormulation **formulation);
+/* The next one of the same target after `formulation`, of NULL the first; NULL where there is none. Not collective. */
+PETSC_INTERN const EqmFormulation *EqmFormulationNext(const char *target, const EqmFormulation *formulation);
+/* The settings of a method's name; "auto" is the first. A registered method that the table does not know gets the
+   target's general settings. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmFormulationFindMethod(MPI_Comm comm, const EqmFormulation *formulation, const char *name,
+                                                     EqmMethodDefaults *defaults);
+/* Names of the methods for a target, or for one formulation of it unless that is NULL, separated by commas. Not
+   collective. */
+PETSC_INTERN PetscErrorCode EqmFormulationMethodNames(const char *target, const EqmFormulation *formulation, char *text,
+                                                      size_t length);
+
+#endif

@@ -1,0 +1,25 @@
+/* What runs inside other runs need of a solver beyond the public interface: register's stages, the ball's start. */
+#ifndef EQM_SOLVER_INNER_H
+#define EQM_SOLVER_INNER_H
+
+#include <equimap/solver.h>
+#include "base/stop.h"
+
+/* The run is the `stage`-th minimisation of several, counted from 1, each with a checkpoint of its own: the names of
+   -checkpoint and -restart get .STAGE behind. A later stage whose checkpoint is not there begins anew. Call after
+   EqmSolverSetFromOptions. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage);
+/* Watch for the file STOP that has been watched for since the run began. Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolverSetStopFile(EqmSolver solver, const EqmStopFile *watch);
+/* Requests to stop are not for this solver: a start that was cut short would be another start. Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolverIgnoreStopRequests(EqmSolver solver);
+/* The name that checkpoints give for the run's copies of its meshes. Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolverSetKeptMesh(EqmSolver solver, const char *name);
+/* Could the last checkpoint not be written? Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolverCheckpointFailed(EqmSolver solver, PetscBool *failed);
+/* lm: at most so many quasi-Newton steps on each factor, unless -lm_inner says otherwise. Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolverSetInnerSteps(EqmSolver solver, PetscInt steps);
+/* Does the method that is set take landmarks? Errors: EQM_ERR_USAGE if it does not. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverRequireLandmarks(EqmSolver solver);
+
+#endif

@@ -1,0 +1,107 @@
+/* Conformal maps of closed surfaces that fold, or that have cells too small for the arithmetic: once more on the
+   intrinsic Delaunay triangulation (docs/methods.md, Thin limbs). */
+#include "solver/solver_private.h"
+#include <string.h>
+
+/* A map of another mesh of the same vertices becomes the solver's: normalised, unfolded if it must be. */
+static PetscErrorCode TakePlaces(EqmSolver solver, EqmProblem other, EqmIterate found, EqmSoup flipped)
+{
+  const EqmSoup soup = solver->mesh->soup;
+  const EqmProblem problem = solver->problem;
+  const EqmIterate iterate = solver->iterate;
+  PetscReal *slab;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(3 * (soup->vertex_end - soup->vertex_start), &slab));
+  PetscCall(EqmMeshVerticesToInput(other->mesh, flipped, 3, found->place.x, slab));
+  PetscCall(EqmMeshVerticesFromInput(solver->mesh, soup, 3, slab, iterate->place.x));
+  PetscCall(PetscFree(slab));
+  PetscCall(EqmPlaceMakeFrames(problem->domain, &iterate->place));
+  PetscCall(solver->formulation->finish(solver));
+  PetscCall(EqmIterateUpdate(problem, iterate));
+  if (iterate->totals.folds == 0) PetscFunctionReturn(0);
+  PetscCall(solver->formulation->unfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+  PetscCall(EqmIterateUpdate(problem, iterate));
+  PetscCall(EqmSolverNotifyUnfolded(solver, "of what is left"));
+  PetscFunctionReturn(0);
+}
+
+/* Where the new map folds no more than the old one, which has jammed or worse, it is taken. */
+static PetscErrorCode TakeIfBetter(EqmSolver solver, EqmProblem other, EqmIterate found, EqmSoup flipped)
+{
+  const EqmIterate iterate = solver->iterate;
+  const EqmDomain domain = solver->problem->domain;
+  const PetscInt64 folds = iterate->totals.folds;
+  EqmPlace before;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCreate(domain, &before));
+  PetscCall(EqmPlaceCopy(domain, &iterate->place, &before));
+  PetscCall(TakePlaces(solver, other, found, flipped));
+  if (iterate->totals.folds > folds) {
+    PetscCall(EqmPlaceCopy(domain, &before, &iterate->place));
+    PetscCall(EqmIterateUpdate(solver->problem, iterate));
+  } else if (iterate->totals.folds == 0) {
+    solver->status = EQM_STATUS_CONVERGED;
+    PetscCall(
+        PetscStrncpy(solver->message, "harmonic on the intrinsic Delaunay triangulation", sizeof(solver->message)));
+  }
+  PetscCall(EqmPlaceDestroy(&before));
+  PetscFunctionReturn(0);
+}
+
+/* The map of the flipped mesh. Two of its triangles may have the same corners: folds mean nothing there. */
+static PetscErrorCode SolveFlipped(EqmSolver solver, EqmSoup flipped)
+{
+  const EqmLedger ledger = solver->mesh->ledger;
+  EqmStartOptions options;
+  EqmMesh mesh;
+  EqmDomain domain;
+  EqmProblem problem;
+  EqmIterate found;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DISTRIBUTE));
+  PetscCall(EqmMeshCreate(flipped, ledger, &mesh));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DISTRIBUTE));
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_START));
+  PetscCall(EqmDomainCreateSphere(mesh, &domain));
+  PetscCall(EqmProblemCreate(domain, solver->problem->objective, &problem));
+  PetscCall(EqmIterateCreate(problem, &found));
+  PetscCall(EqmStartOptionsDefault(&options));
+  PetscCall(EqmStartRun(&EqmStartSphereResolved, problem, found, &options));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_START));
+  PetscCall(TakeIfBetter(solver, problem, found, flipped));
+  PetscCall(EqmIterateDestroy(&found));
+  PetscCall(EqmProblemDestroy(&problem));
+  PetscCall(EqmMeshDestroy(&mesh));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverStraighten(EqmSolver solver)
+{
+  const PetscBool can = (PetscBool)(!strcmp(solver->target, "conformal") && solver->problem->domain->curved_image &&
+                                    solver->status != EQM_STATUS_STOPPED && solver->settings.normalise.intrinsic &&
+                                    !strcmp(solver->defaults.name, solver->formulation->methods[0].name));
+  const EqmIterate iterate = solver->iterate;
+  EqmSoup flipped;
+  PetscInt64 flips;
+  PetscReal smallest;
+
+  PetscFunctionBegin;
+  if (!can) PetscFunctionReturn(0);
+  PetscCall(EqmSphereSmallestImage(solver->problem, &iterate->place, &smallest));
+  const PetscBool jammed = (PetscBool)(solver->checkpoints.finished && solver->status == EQM_STATUS_NOT_CONVERGED);
+  if (iterate->totals.folds == 0 && !jammed && smallest >= EqmSmallestImage) PetscFunctionReturn(0);
+  PetscCall(EqmSoupFlip(solver->mesh->soup, &flipped, &flips));
+  PetscCall(EqmProblemNotify(solver->problem,
+                             "%" PetscInt64_FMT " folds, smallest image triangle %.1e: once more on the intrinsic "
+                             "Delaunay triangulation, %" PetscInt64_FMT " edges flipped\n",
+                             iterate->totals.folds, (double)smallest, flips));
+  PetscCall(SolveFlipped(solver, flipped));
+  PetscCall(EqmSoupDestroy(&flipped));
+  iterate->number++;
+  PetscCall(EqmHistoryAddRow(solver));
+  PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_END, solver->message));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,142 @@
+#include "solver/judge.h"
+#include <string.h>
+
+/* Has the objective all but stopped falling over the last iterations? */
+static PetscBool Stagnates(EqmSolver solver)
+{
+  const PetscInt last = solver->num_history - 1, span = solver->settings.stagnation;
+
+  if (last < span) return PETSC_FALSE;
+  const PetscReal then = solver->objectives[last - span], now = solver->objectives[last];
+  return (PetscBool)(solver->settings.energy_rtol > 0. &&
+                     then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
+}
+
+/* The method has come to its end, but the map may be none of equal areas. */
+static PetscErrorCode DoubtStandstill(EqmSolver solver)
+{
+  const EqmImageTotals *const totals = &solver->iterate->totals;
+  const PetscReal poor = solver->problem->objective->poor_energy;
+
+  PetscFunctionBegin;
+  if (poor == 0. || totals->energy <= poor * totals->total) PetscFunctionReturn(0);
+  solver->status = EQM_STATUS_NOT_CONVERGED;
+  PetscCall(PetscStrlcat(solver->message,
+                         ", far from equal areas: the target may not suit the mesh (corners? slivers?)",
+                         sizeof(solver->message)));
+  PetscFunctionReturn(0);
+}
+
+/* Energy target, ratios, gradient: is one of them reached? */
+static PetscErrorCode MeetsTolerance(EqmSolver solver, PetscBool *meets)
+{
+  const EqmSolverSettings *const set = &solver->settings;
+  const EqmIterate iterate = solver->iterate;
+  const EqmImageTotals *const totals = &iterate->totals;
+  PetscBool reached;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverLandmarksReached(solver, &reached));
+  *meets = PETSC_TRUE;
+  if (reached && set->energy_target > 0. && totals->energy <= set->energy_target) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %g",
+                            (double)set->energy_target));
+  } else if (reached && set->ratio_tol > 0. && totals->energy <= PetscSqr(set->ratio_tol) * totals->total) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                            "the ratios are within %g of one, root mean square", (double)set->ratio_tol));
+  } else if (iterate->gradient_norm >= 0. && iterate->gradient_norm <= set->gradient_tol) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the gradient's norm is below %g",
+                            (double)set->gradient_tol));
+  } else {
+    *meets = PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The clock is rank 0's, so that all ranks agree. */
+static PetscErrorCode ExceedsLimit(EqmSolver solver, PetscBool *stop)
+{
+  const EqmSolverSettings *const set = &solver->settings;
+  EqmWork *work;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
+  *stop = PETSC_TRUE;
+  if (solver->iterate->number >= set->max_it) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                            "stopped after -max_it %" PetscInt_FMT " iterations", set->max_it));
+  } else if (set->max_factorizations > 0 && work->coupled_factorizations >= set->max_factorizations) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                            "stopped after -max_factorizations %" PetscInt_FMT, set->max_factorizations));
+  } else {
+    PetscCall(EqmCheckpointAskedToStop(solver, stop));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop)
+{
+  PetscFunctionBegin;
+  solver->status = EQM_STATUS_CONVERGED;
+  PetscCall(MeetsTolerance(solver, stop));
+  if (*stop) PetscFunctionReturn(0);
+  *stop = Stagnates(solver);
+  if (*stop) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                            "the objective fell by less than %g %% per iteration over the last %" PetscInt_FMT
+                            " iterations",
+                            100. * (double)solver->settings.energy_rtol, solver->settings.stagnation));
+    PetscCall(DoubtStandstill(solver));
+    PetscFunctionReturn(0);
+  }
+  solver->status = EQM_STATUS_NOT_CONVERGED;
+  PetscCall(ExceedsLimit(solver, stop));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmJudgeEnd(EqmSolver solver, EqmStep outcome)
+{
+  const PetscBool converged = (PetscBool)(outcome == EQM_STEP_CONVERGED);
+  const char *const usual =
+      converged ? "the next step would change the objective by rounding only"
+                : "no step decreases the objective any more: the limit of this method and this arithmetic";
+
+  PetscFunctionBegin;
+  solver->checkpoints.finished = PETSC_TRUE;
+  solver->status = converged ? EQM_STATUS_CONVERGED : EQM_STATUS_NOT_CONVERGED;
+  PetscCall(PetscStrncpy(solver->message, solver->method->message[0] ? solver->method->message : usual,
+                         sizeof(solver->message)));
+  if (converged) PetscCall(DoubtStandstill(solver));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmJudgeFolds(EqmSolver solver)
+{
+  const EqmMethodDefaults *const offered = &solver->formulation->methods[0];
+  const PetscBool solid = (PetscBool)(solver->mesh->cell_size == 4);
+  const PetscBool is_default =
+      (PetscBool)(!strcmp(solver->defaults.name, offered->name) && !strcmp(solver->start->name, offered->start));
+  PetscInt64 on_boundary = 0;
+
+  PetscFunctionBegin;
+  if (solid) PetscCall(EqmImageBoundaryFolds(solver->problem->domain, &solver->iterate->place, &on_boundary));
+  if (solver->iterate->totals.folds == 0 && on_boundary == 0) PetscFunctionReturn(0);
+  solver->status = EQM_STATUS_FOLDS;
+  PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "%" PetscInt64_FMT " %s of the map are folded over",
+                          solver->iterate->totals.folds, solid ? "tetrahedra" : "triangles"));
+  if (solid) {
+    PetscCall(PetscSNPrintf(solver->message + strlen(solver->message),
+                            sizeof(solver->message) - strlen(solver->message),
+                            ", and %" PetscInt64_FMT
+                            " triangles of its boundary; where `check` finds interior edges between boundary vertices, "
+                            "-repair splits them, which helps; else",
+                            on_boundary));
+  } else {
+    PetscCall(PetscStrlcat(solver->message, ";", sizeof(solver->message)));
+  }
+  PetscCall(PetscStrlcat(solver->message,
+                         is_default ? " cells of a better shape, or finer ones, may help"
+                                    : " try the default method and its start",
+                         sizeof(solver->message)));
+  PetscFunctionReturn(0);
+}

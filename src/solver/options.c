@@ -1,0 +1,267 @@
+/* The options of a solver: defaults, names, help; and how what they leave open is settled. */
+#include "solver/solver_private.h"
+#include "solver/inner.h"
+#include <string.h>
+
+/* -1 where the method decides. Not collective. */
+PetscErrorCode EqmSolverSettingsDefault(EqmSolverSettings *settings)
+{
+  PetscFunctionBegin;
+  *settings = (EqmSolverSettings){.method = "auto",
+                                  .max_it = -1,
+                                  .energy_rtol = -1.,
+                                  .ratio_tol = -1.,
+                                  .gradient_tol = -1.,
+                                  .balance = -1.,
+                                  .stagnation = 5,
+                                  .inner_steps = -1,
+                                  .checkpoint_every = -1};
+  PetscCall(EqmStartOptionsDefault(&settings->start));
+  PetscCall(EqmNormaliseSettingsDefault(&settings->normalise));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Check(MPI_Comm comm, const EqmSolverSettings *set)
+{
+  PetscFunctionBegin;
+  if (set->max_it < -1) EqmFail(comm, EQM_ERR_USAGE, "-max_it %" PetscInt_FMT ": give 0 or more", set->max_it);
+  if (set->wall_time < 0.)
+    EqmFail(comm, EQM_ERR_USAGE, "-wall_time %g: give a number of seconds, 0 for no limit", (double)set->wall_time);
+  if (set->checkpoint_every < -1)
+    EqmFail(comm, EQM_ERR_USAGE, "-checkpoint_every %" PetscInt_FMT ": give 1 or more, 0 or -1", set->checkpoint_every);
+  if (set->balance < 0. && set->balance != -1.)
+    EqmFail(comm, EQM_ERR_USAGE, "-balance %g: give 0 or more; .001 to .1 are useful", (double)set->balance);
+  PetscFunctionReturn(0);
+}
+
+/* ---- the groups of options */
+
+/* Of a run, whatever solvers it consists of. */
+static PetscErrorCode ReadRunOptions(EqmSolverSettings *set, PetscOptionItems *PetscOptionsObject)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLinearAskOptions(PetscOptionsObject));
+  PetscCall(PetscOptionsBool("-quiet", "no progress", "EqmSolverSetFromOptions", set->quiet, &set->quiet, NULL));
+  PetscCall(
+      PetscOptionsReal("-wall_time",
+                       "stop after so many seconds since the program's start: with -checkpoint before the time is "
+                       "over and to be continued, else with the map so far (0: no limit)",
+                       "EqmSolverSetFromOptions", set->wall_time, &set->wall_time, NULL));
+  PetscCall(
+      PetscOptionsString("-checkpoint",
+                         "keep the state of the run in this file (HDF5; the one before is FILE.previous): now and "
+                         "then, and before stopping at -wall_time, on the signals USR1 and TERM, or when a file "
+                         "STOP appears beside it",
+                         "EqmSolverSetFromOptions", set->checkpoint, set->checkpoint, sizeof(set->checkpoint), NULL));
+  PetscCall(PetscOptionsInt("-checkpoint_every",
+                            "write the checkpoint every so many iterations (-1: as often as takes 3 % of the time, 0: "
+                            "only when the run stops)",
+                            "EqmSolverSetFromOptions", set->checkpoint_every, &set->checkpoint_every, NULL));
+  PetscCall(PetscOptionsString("-restart", "go on from this checkpoint, or from the one before it if it is damaged",
+                               "EqmSolverSetFromOptions", set->restart, set->restart, sizeof(set->restart), NULL));
+  PetscFunctionReturn(0);
+}
+
+/* When to stop. */
+static PetscErrorCode ReadTolerances(EqmSolverSettings *set, PetscOptionItems *PetscOptionsObject)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsInt("-max_it", "at most so many iterations (-1: the method's own)", "EqmSolverSetFromOptions",
+                            set->max_it, &set->max_it, NULL));
+  PetscCall(PetscOptionsInt("-max_factorizations", "at most so many coupled factorisations (0: no limit)",
+                            "EqmSolverSetFromOptions", set->max_factorizations, &set->max_factorizations, NULL));
+  PetscCall(PetscOptionsReal("-energy_rtol",
+                             "converged when the objective falls by less than this share per iteration, over some "
+                             "iterations (-1: the method's own, 0: never)",
+                             "EqmSolverSetFromOptions", set->energy_rtol, &set->energy_rtol, NULL));
+  PetscCall(
+      PetscOptionsReal("-ratio_tol",
+                       "converged when the root mean square of ratio - 1 is no larger than this (-1: the method's own, "
+                       "none with -energy_rtol 0; 0: never)",
+                       "EqmSolverSetFromOptions", set->ratio_tol, &set->ratio_tol, NULL));
+  PetscCall(PetscOptionsReal("-energy_target", "converged when the energy is no larger than this (0: off)",
+                             "EqmSolverSetFromOptions", set->energy_target, &set->energy_target, NULL));
+  PetscCall(
+      PetscOptionsReal("-gradient_tol",
+                       "converged when the gradient's norm is no larger than this (-1: the method's own, 0: never)",
+                       "EqmSolverSetFromOptions", set->gradient_tol, &set->gradient_tol, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadCorners(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  EqmSolverSettings *const set = &solver->settings;
+  PetscInt num_corners = 4;
+  PetscBool given;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsIntArray("-corners",
+                                 "four boundary vertices (input numbers from 0) for (0,0), (1,0), (1,1), (0,1)",
+                                 "EqmSolverSetFromOptions", set->corners, &num_corners, &given));
+  if (given && num_corners != 4)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-corners: give four vertex numbers, i,j,k,l; there are %" PetscInt_FMT,
+            num_corners);
+  if (given) set->has_corners = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  EqmSolverSettings *const set = &solver->settings;
+  char methods[EQM_MESSAGE_MAX] = "the iteration: ";
+
+  PetscFunctionBegin;
+  PetscCall(EqmFormulationMethodNames(solver->target, NULL, methods + 15, sizeof(methods) - 15));
+  PetscCall(PetscOptionsString("-method", methods, "EqmSolverSetFromOptions", set->method, set->method,
+                               sizeof(set->method), NULL));
+  PetscCall(EqmStartSetFromOptions(solver->formulation->starts, &set->start, PetscOptionsObject));
+  PetscCall(ReadTolerances(set, PetscOptionsObject));
+  PetscCall(PetscOptionsReal("-balance",
+                             "weight of the angle energy beside the area energy; .01 gives one nearly unique, smoother "
+                             "map (-1: the method's own, 0: none)",
+                             "EqmSolverSetFromOptions", set->balance, &set->balance, NULL));
+  if (!solver->prefix[0]) PetscCall(ReadRunOptions(set, PetscOptionsObject)); /* one for all that runs */
+  if (!strcmp(solver->formulation->domain, "square")) PetscCall(ReadCorners(solver, PetscOptionsObject));
+  PetscFunctionReturn(0);
+}
+
+/* ---- methods */
+
+/* A method as the formulation has it, and then as the options have it. */
+static PetscErrorCode CreateMethod(EqmSolver solver, const EqmMethodDefaults *defaults,
+                                   PetscOptionItems *PetscOptionsObject, EqmMethod *method)
+{
+  PetscBool is_lm;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMethodCreate(solver->comm, defaults->method, method));
+  if (defaults->configure) PetscCall(defaults->configure(*method));
+  PetscCall(PetscStrcmp(defaults->method, "lm", &is_lm));
+  if (is_lm && solver->settings.inner_steps >= 0) PetscCall(EqmLmSetInnerSteps(*method, solver->settings.inner_steps));
+  if (PetscOptionsObject) PetscCall(EqmMethodSetFromOptions(*method, PetscOptionsObject));
+  if (is_lm) PetscCall(EqmLmSetBalance(*method, PetscMax(solver->settings.balance, 0.)));
+  PetscFunctionReturn(0);
+}
+
+/* The options of all methods for the target, each once: known, and listed by -help. */
+static PetscErrorCode ListMethodOptions(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  const EqmMethodDefaults *seen[64];
+  PetscInt num_seen = 0;
+
+  PetscFunctionBegin;
+  for (const EqmFormulation *f = EqmFormulationNext(solver->target, NULL); f;
+       f = EqmFormulationNext(solver->target, f)) {
+    for (PetscInt k = 0; k < f->num_methods; k++) {
+      EqmMethod method;
+      PetscInt s = 0;
+      while (s < num_seen && strcmp(seen[s]->name, f->methods[k].name)) s++;
+      if (s < num_seen) continue;
+      seen[num_seen++] = &f->methods[k];
+      PetscCall(CreateMethod(solver, &f->methods[k], PetscOptionsObject, &method));
+      PetscCall(EqmMethodDestroy(&method));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The first maps of other formulations of the target. */
+static PetscErrorCode ListOtherStarts(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  EqmStartOptions start;
+
+  PetscFunctionBegin;
+  for (const EqmFormulation *f = EqmFormulationNext(solver->target, solver->formulation); f;
+       f = EqmFormulationNext(solver->target, f)) {
+    PetscCall(EqmStartOptionsDefault(&start));
+    PetscCall(EqmStartSetFromOptions(f->starts, &start, PetscOptionsObject));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverSettle(EqmSolver solver)
+{
+  EqmSolverSettings *const set = &solver->settings;
+  const EqmFormulation *const formulation = solver->formulation;
+
+  PetscFunctionBegin;
+  PetscCall(Check(solver->comm, set));
+  if (set->balance > 0. && !formulation->takes_balance)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for the %s", formulation->domain);
+  if (!solver->method) {
+    PetscCall(EqmFormulationFindMethod(solver->comm, formulation, set->method, &solver->defaults));
+    PetscCall(CreateMethod(solver, &solver->defaults, NULL, &solver->method));
+  }
+  if (!set->start.name[0]) PetscCall(PetscStrncpy(set->start.name, solver->defaults.start, sizeof(set->start.name)));
+  if (set->max_it < 0) set->max_it = solver->defaults.max_it;
+  if (set->ratio_tol < 0.) set->ratio_tol = set->energy_rtol == 0. ? 0. : solver->defaults.ratio_tol;
+  if (set->energy_rtol < 0.) set->energy_rtol = solver->defaults.energy_rtol;
+  if (set->gradient_tol < 0.) set->gradient_tol = solver->defaults.gradient_tol;
+  PetscCall(EqmStartFind(solver->comm, formulation->starts, formulation->domain, set->start.name, &solver->start));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverCheckLandmarkSupport(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  if (!solver->method->takes_landmarks)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s cannot draw landmarks together; take lm", solver->defaults.name);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverRequireLandmarks(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSolverSettle(solver));
+  PetscCall(EqmSolverCheckLandmarkSupport(solver));
+  PetscFunctionReturn(0);
+}
+
+/* The options of the solver's own formulation and method. */
+static PetscErrorCode ReadOwn(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
+{
+  EqmSolverSettings *const set = &solver->settings;
+
+  PetscFunctionBegin;
+  PetscCall(ReadCommon(solver, PetscOptionsObject));
+  for (const EqmFormulation *f = EqmFormulationNext(solver->target, NULL); f; /* refused where they have no meaning */
+       f = EqmFormulationNext(solver->target, f)) {
+    if (f->finish)
+      PetscCall(EqmNormaliseSetFromOptions(solver->comm, solver->mesh, &set->normalise, PetscOptionsObject));
+  }
+  if (!solver->mesh) PetscFunctionReturn(0);
+  PetscCall(EqmMethodDestroy(&solver->method));
+  PetscCall(EqmFormulationFindMethod(solver->comm, solver->formulation, set->method, &solver->defaults));
+  PetscCall(CreateMethod(solver, &solver->defaults, PetscOptionsObject, &solver->method));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCheck(!solver->is_set_up, solver->comm, PETSC_ERR_ORDER, "%s comes before EqmSolverSetUp and EqmSolverSolve",
+             PETSC_FUNCTION_NAME);
+  PetscOptionsBegin(solver->comm, solver->prefix, solver->prefix[0] ? "Map of the boundary to the sphere" : "Map",
+                    NULL);
+  PetscCall(ReadOwn(solver, PetscOptionsObject));
+  PetscOptionsEnd();
+  PetscCall(EqmSolverSettle(solver));
+  PetscFunctionReturn(0);
+}
+
+/* Without a mesh: what could be asked for, and what is wrong whatever the mesh. */
+PetscErrorCode EqmSolverListOptions(EqmSolver solver)
+{
+  const PetscBool one = (PetscBool)!EqmFormulationNext(solver->target, solver->formulation);
+
+  PetscFunctionBegin;
+  PetscOptionsBegin(solver->comm, solver->prefix, solver->prefix[0] ? "Map of the boundary to the sphere" : "Map",
+                    NULL);
+  PetscCall(ReadOwn(solver, PetscOptionsObject));
+  PetscCall(ListOtherStarts(solver, PetscOptionsObject));
+  PetscCall(ListMethodOptions(solver, PetscOptionsObject));
+  PetscOptionsEnd();
+  PetscCall(Check(solver->comm, &solver->settings));
+  if (one) PetscCall(EqmSolverSettle(solver)); /* else the mesh will tell */
+  PetscFunctionReturn(0);
+}

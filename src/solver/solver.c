@@ -1,0 +1,221 @@
+/* The loop that all methods share: set up, iterate, unfold. */
+#include "solver/solver_private.h"
+#include "solver/inner.h"
+#include "solver/judge.h"
+#include <string.h>
+
+PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *out)
+{
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMethodRegisterAll());
+  PetscCall(PetscNew(&solver));
+  solver->comm = mesh->comm;
+  solver->mesh = mesh;
+  PetscCall(PetscStrncpy(solver->target, target, sizeof(solver->target)));
+  PetscCall(EqmSolverSettingsDefault(&solver->settings));
+  PetscCall(EqmFormulationFind(solver->comm, target, mesh, &solver->formulation));
+  *out = solver;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverDestroy(EqmSolver *solver)
+{
+  EqmSolver s = *solver;
+
+  PetscFunctionBegin;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(EqmMethodDestroy(&s->method));
+  PetscCall(EqmIterateDestroy(&s->iterate));
+  PetscCall(EqmProblemDestroy(&s->problem));
+  PetscCall(EqmLandmarksReset(&s->landmarks));
+  PetscCall(PetscFree(s->objectives));
+  PetscCall(PetscFree(s->history));
+  PetscCall(PetscFree(s->first_map));
+  PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(0);
+}
+
+/* ---- set-up */
+
+static PetscErrorCode StopRequested(void *context, PetscBool *stop)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmCheckpointAskedToStop(context, stop));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateProblem(EqmSolver solver)
+{
+  EqmDomain domain;
+
+  PetscFunctionBegin;
+  PetscCall(solver->formulation->create_domain(solver, &domain));
+  PetscCall(EqmProblemCreate(domain, solver->formulation->objective, &solver->problem));
+  PetscCall(PetscStrncpy(solver->problem->prefix, solver->prefix, sizeof(solver->problem->prefix)));
+  solver->problem->notify = EqmSolverNotify;
+  solver->problem->stop_requested = StopRequested;
+  solver->problem->context = solver;
+  PetscCall(EqmIterateCreate(solver->problem, &solver->iterate));
+  PetscFunctionReturn(0);
+}
+
+/* ---- a solver inside the solver: the ball's start maps the surface to the sphere, with options of its own */
+
+/* The solid's fixed-point iteration begins with the surface's (003 Algorithm 1). */
+static PetscErrorCode SetSurfaceDefaults(EqmSolver solver, EqmSolver sphere)
+{
+  const PetscBool by_fixed_point = (PetscBool)!strcmp(solver->defaults.name, "fixed-point");
+  PetscBool limited;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverSetOptionsPrefix(sphere, EQM_BOUNDARY_PREFIX));
+  PetscCall(EqmSolverSetTolerances(sphere, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, by_fixed_point ? 10 : 60));
+  if (by_fixed_point) PetscCall(EqmSolverSetMethod(sphere, solver->defaults.name));
+  PetscCall(PetscOptionsHasName(NULL, EQM_BOUNDARY_PREFIX, "-max_it", &limited));
+  if (!by_fixed_point && !limited) /* a longer run would magnify the last digits of the input */
+    PetscCall(EqmSolverSetTolerances(sphere, PETSC_DEFAULT, .01, PETSC_DEFAULT, PETSC_DEFAULT));
+  PetscCall(EqmSolverIgnoreStopRequests(sphere));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MapSurface(void *context, EqmMesh surface, PetscReal *x, PetscInt64 *folds)
+{
+  const EqmSolver solver = context;
+  EqmSolver sphere;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverCreate(surface, "sphere", &sphere));
+  PetscCall(SetSurfaceDefaults(solver, sphere));
+  PetscCall(EqmSolverSetFromOptions(sphere));
+  PetscCall(EqmSolverSolve(sphere));
+  PetscCall(PetscArraycpy(x, sphere->iterate->place.x, 3 * surface->num_local));
+  *folds = sphere->iterate->totals.folds;
+  PetscCall(EqmSolverDestroy(&sphere));
+  PetscFunctionReturn(0);
+}
+
+/* ---- set-up */
+
+/* The first map: a checkpoint's, one that was given, or a start's. */
+static PetscErrorCode MakeFirstMap(EqmSolver solver)
+{
+  const EqmDomain domain = solver->problem->domain;
+  EqmPlace *const place = &solver->iterate->place;
+
+  PetscFunctionBegin;
+  if (solver->settings.restart[0]) {
+    PetscCall(EqmCheckpointLoadMap(solver));
+  } else if (solver->first_map) {
+    PetscCheck(solver->first_map_dim == domain->dim, solver->comm, PETSC_ERR_ARG_INCOMP,
+               "a first map has the target's coordinates");
+    PetscCall(PetscArraycpy(place->x, solver->first_map, domain->dim * solver->mesh->num_owned));
+    PetscCall(EqmMeshUpdateGhosts(solver->mesh, domain->dim, place->x));
+    PetscCall(EqmPlaceMakeFrames(domain, place));
+  } else {
+    solver->settings.start.map_surface = MapSurface;
+    solver->settings.start.context = solver;
+    PetscCall(EqmStartRun(solver->start, solver->problem, solver->iterate, &solver->settings.start));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverSetUp(EqmSolver solver)
+{
+  const EqmLedger ledger = solver->mesh->ledger;
+
+  PetscFunctionBegin;
+  if (solver->is_set_up) PetscFunctionReturn(0);
+  PetscCall(EqmSolverSettle(solver));
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_START));
+  PetscCall(CreateProblem(solver));
+  PetscCall(EqmCheckpointBegin(solver));
+  solver->problem->landmarks = solver->landmarks; /* whose arrays are the problem's from here on */
+  solver->landmarks = (EqmLandmarks){0};
+  solver->is_set_up = PETSC_TRUE;
+  PetscCall(MakeFirstMap(solver));
+  if (solver->problem->landmarks.num_total > 0) PetscCall(EqmSolverCheckLandmarkSupport(solver));
+  PetscCall(EqmLandmarksSetUp(&solver->problem->landmarks, solver->problem->domain));
+  PetscCall(EqmIterateUpdate(solver->problem, solver->iterate));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_START));
+  PetscFunctionReturn(0);
+}
+
+/* ---- iterations */
+
+/* The method is ready for its first step, or for the next one of a run that was interrupted. */
+static PetscErrorCode SetUpMethod(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMethodSetUp(solver->method, solver->problem, solver->iterate));
+  PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_BEGIN, solver->problem->linear_solver));
+  if (solver->checkpoints.open)
+    PetscCall(EqmCheckpointLoadMethod(solver));
+  else
+    PetscCall(EqmHistoryAddRow(solver));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Iterate(EqmSolver solver)
+{
+  EqmIterate const iterate = solver->iterate;
+  PetscBool stop = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(SetUpMethod(solver));
+  if (!solver->checkpoints.finished) PetscCall(EqmJudgeIteration(solver, &stop));
+  while (!stop && !solver->checkpoints.finished) {
+    EqmStep outcome;
+    PetscCall(EqmCheckpointIfDue(solver));
+    PetscCall(EqmMethodStep(solver->method, iterate, &outcome));
+    if (outcome != EQM_STEP_TAKEN) {
+      PetscCall(EqmJudgeEnd(solver, outcome));
+      break;
+    }
+    iterate->number++;
+    PetscCheck(!PetscIsInfOrNanReal(iterate->totals.energy), solver->comm, PETSC_ERR_FP,
+               "the energy is not finite after iteration %" PetscInt_FMT, iterate->number);
+    PetscCall(EqmHistoryAddRow(solver));
+    PetscCall(EqmJudgeIteration(solver, &stop));
+  }
+  PetscCall(EqmCheckpointEnd(solver));
+  PetscCall(EqmMethodReset(solver->method));
+  PetscFunctionReturn(0);
+}
+
+/* The formulation's last change, and folds mended if that can be done. */
+static PetscErrorCode End(EqmSolver solver)
+{
+  const EqmFormulation *const formulation = solver->formulation;
+  EqmIterate const iterate = solver->iterate;
+  PetscBool stop = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (formulation->finish) PetscCall(formulation->finish(solver));
+  if (formulation->unfold && iterate->totals.folds > 0) PetscCall(EqmCheckpointAskedToStop(solver, &stop));
+  if (formulation->unfold && iterate->totals.folds > 0 && !stop) {
+    PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+    PetscCall(formulation->unfold(solver->problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+    PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+    PetscCall(EqmIterateUpdate(solver->problem, iterate));
+    PetscCall(EqmSolverNotifyUnfolded(solver, "at the end"));
+  }
+  if (solver->status != EQM_STATUS_STOPPED) PetscCall(EqmJudgeFolds(solver));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverSolve(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSolverSetUp(solver));
+  if (solver->iterate->unfolded_from > 0 && !solver->checkpoints.open)
+    PetscCall(EqmSolverNotifyUnfolded(solver, "at the start"));
+  PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  PetscCall(Iterate(solver));
+  PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  if (solver->status != EQM_STATUS_STOPPED) PetscCall(End(solver));
+  PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_END, solver->message));
+  PetscCall(EqmSolverStraighten(solver));
+  PetscFunctionReturn(0);
+}

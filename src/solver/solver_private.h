@@ -1,0 +1,78 @@
+/* What the files of this folder know of a solver; nobody else does. */
+#ifndef EQM_SOLVER_PRIVATE_H
+#define EQM_SOLVER_PRIVATE_H
+
+#include <equimap/solver.h>
+#include "solver/checkpoint.h"
+#include "solver/formulation.h"
+#include "solver/normalise.h"
+
+/* The common settings; a negative number leaves the decision to the method. */
+typedef struct {
+  char method[32];
+  EqmStartOptions start;
+  PetscInt max_it, max_factorizations;
+  PetscReal energy_rtol, ratio_tol, energy_target, gradient_tol, wall_time, balance;
+  PetscInt stagnation;  /* iterations that energy_rtol refers to */
+  PetscInt inner_steps; /* of lm, before its options are read */
+  PetscBool quiet, has_corners;
+  PetscInt corners[4];
+  char checkpoint[PETSC_MAX_PATH_LEN], restart[PETSC_MAX_PATH_LEN]; /* empty: none */
+  PetscInt checkpoint_every;                                        /* iterations; 0: only at the end */
+  EqmNormaliseSettings normalise;                                   /* conformal, closed surfaces */
+} EqmSolverSettings;
+
+struct _p_EqmSolver {
+  MPI_Comm comm;
+  EqmMesh mesh; /* NULL where options are only to be listed */
+  char target[16], prefix[32];
+  EqmSolverSettings settings;
+  const EqmFormulation *formulation;
+  EqmMethodDefaults defaults; /* of the method for the formulation */
+  const EqmStartType *start;
+  EqmMethod method; /* NULL until the settings are settled */
+  PetscBool is_set_up;
+
+  EqmProblem problem;
+  EqmIterate iterate;
+  PetscReal *first_map; /* given from outside, first_map_dim per owned vertex; NULL: -start makes it */
+  PetscInt first_map_dim;
+  EqmLandmarks landmarks; /* as given; the problem's from SetUp on */
+
+  PetscReal *objectives; /* of every iteration, num_history long */
+  EqmHistoryRow *history;
+  PetscInt num_history, max_history;
+  EqmStatus status;
+  char message[EQM_MESSAGE_MAX];
+  EqmCheckpoints checkpoints;
+
+  EqmMonitor monitor;
+  void *monitor_context;
+  PetscReal last_shown; /* the text monitor's: seconds when the last row was printed */
+  PetscInt rows_shown;  /* and num_history at that time */
+};
+
+/* ---- options.c */
+PETSC_INTERN PetscErrorCode EqmSolverSettingsDefault(EqmSolverSettings *settings);
+/* Look up method and start, and take what is left open as the formulation has it. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverSettle(EqmSolver solver);
+/* Read every option that the target could have. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverListOptions(EqmSolver solver);
+/* ---- history.c */
+PETSC_INTERN PetscErrorCode EqmHistoryReserve(EqmSolver solver, PetscInt rows);
+/* Add a row for the present map and call the monitor. Collective. */
+PETSC_INTERN PetscErrorCode EqmHistoryAddRow(EqmSolver solver);
+PETSC_INTERN PetscErrorCode EqmSolverCallMonitor(EqmSolver solver, EqmMonitorEvent event, const char *text);
+/* Print a line for people; a problem's `notify`, whose context is the solver. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverNotify(void *solver, const char *text);
+PETSC_INTERN PetscErrorCode EqmSolverNotifyUnfolded(EqmSolver solver, const char *when);
+/* Prefix of the options of the surface's map in the ball's start. */
+#define EQM_BOUNDARY_PREFIX "boundary_"
+/* ---- intrinsic.c: the second attempt of EqmSolverSolve. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverStraighten(EqmSolver solver);
+
+/* Refuse landmarks for a method that has no use for them, known once the settings are settled. Errors: EQM_ERR_USAGE.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverCheckLandmarkSupport(EqmSolver solver);
+
+#endif

@@ -1,0 +1,75 @@
+/* First maps: the starts that -start names, by the family of domains that they map to.
+
+   A start is one function, with a name and a line for people; EqmStartRegister makes it known. */
+#ifndef EQM_START_H
+#define EQM_START_H
+
+#include "problem/problem.h"
+
+/* Which first maps there are to choose from. */
+typedef enum { EQM_STARTS_PLANE, EQM_STARTS_SPHERE, EQM_STARTS_BALL } EqmStartFamily;
+
+/* Map a closed surface to the sphere: x, three per local vertex of `surface`, ghosts up to date; `folds` of the map.
+   What the ball's start is handed. Collective. */
+typedef PetscErrorCode (*EqmMapSurface)(void *context, EqmMesh surface, PetscReal *x, PetscInt64 *folds);
+
+/* What steers a start. */
+typedef struct {
+  char name[32];                 /* empty: the target's own for the method */
+  PetscInt steps;                /* fixed-point steps after the first map; -1: as the start has it */
+  PetscBool center;              /* sphere: bring the mass centre to the sphere's by a Moebius map at the end */
+  PetscBool anisotropic_scaling; /* ball: turn and scale the solid to fill a cube first (003 (11)) */
+  EqmMapSurface map_surface;     /* ball */
+  void *context;                 /* of map_surface */
+} EqmStartOptions;
+
+typedef struct {
+  EqmStartFamily family;
+  const char *name, *purpose;
+  PetscInt steps;                                                         /* unless the options say otherwise */
+  PetscErrorCode (*run)(EqmProblem, EqmIterate, const EqmStartOptions *); /* options->steps is settled */
+} EqmStartType;
+
+/* Make a start known; `type` must outlive the program's use of it. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmStartRegister(const EqmStartType *type);
+/* The start of a name. `place` is the target's word in the message. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmStartFind(MPI_Comm comm, EqmStartFamily family, const char *place, const char *name,
+                                         const EqmStartType **type);
+/* The names of all starts of a family, separated by commas. Not collective. */
+PETSC_INTERN PetscErrorCode EqmStartNames(EqmStartFamily family, char *text, size_t length);
+/* Defaults, then the options of a family: -start, -start_steps, ... Collective. */
+PETSC_INTERN PetscErrorCode EqmStartOptionsDefault(EqmStartOptions *options);
+PETSC_INTERN PetscErrorCode EqmStartSetFromOptions(EqmStartFamily family, EqmStartOptions *options,
+                                                   PetscOptionItems *PetscOptionsObject);
+/* The first map, with frames; image and totals are not made. Collective. */
+PETSC_INTERN PetscErrorCode EqmStartRun(const EqmStartType *type, EqmProblem problem, EqmIterate iterate,
+                                        const EqmStartOptions *options);
+
+/* The starts of this folder, each in a file with its like. */
+PETSC_INTERN const EqmStartType EqmStartPlaneHarmonic, EqmStartPlaneFixedPoint, EqmStartPlaneTutte,
+    EqmStartPlaneGuarded, EqmStartPlaneArcLength, EqmStartSphereLinearType, EqmStartSphereFixedPoint,
+    EqmStartSphereDescending, EqmStartSphereGuarded, EqmStartSphereConformal, EqmStartSphereResolved,
+    EqmStartSphereNormals, EqmStartSphereGauss, EqmStartSphereTutte, EqmStartBallHarmonic, EqmStartBallFixedPoint;
+
+/* ---- parts that several starts use */
+/* A step in (0, 1] along a straight motion that keeps cells of positive area well away from zero: the whole one if it
+   ends short of the first zero by a margin, else half the way there. (To go nearly all the way saves little and leaves
+   a triangle so flat that the last digits of its corners decide on what follows.) `velocity` per local vertex.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmStepToFold(EqmProblem problem, const EqmPlace *place, const PetscReal *velocity,
+                                          PetscReal *step);
+/* Laplacian linearisation (001 section 6): one triangle pinned in the plane, the rest harmonic, onto the sphere. With
+   `dipole` the triangle's places are sources instead, and the metric of the objective, which must be fixed, is factored
+   for that. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereLinear(EqmProblem problem, EqmIterate iterate, PetscBool dipole);
+/* L z = b, b zero but at three vertices (global numbers; two numbers each, which add up to zero); z two per local
+   vertex. Collective. */
+PETSC_INTERN PetscErrorCode EqmDipoleSolve(EqmProblem problem, const EqmPlace *place, const PetscInt corner[3],
+                                           const PetscReal charge[6], PetscReal *z);
+/* Tutte's map by two hemispheres (004 section 5.1), with equal weights; may fold along the equator. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate);
+/* The harmonic map for the angle weights, cap by cap, centred; where cells would become too small for the arithmetic,
+   with a conductivity that falls towards the tips of limbs, which the problem's angle weights keep. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereResolved(EqmProblem problem, EqmIterate iterate);
+
+#endif

@@ -1,0 +1,16 @@
+/* Bijectivity repair: each function tries to unfold a map and leaves the one with the fewest folds, its image and
+   totals up to date; `before` and `after` count folds. Collective. */
+#ifndef EQM_UNFOLD_H
+#define EQM_UNFOLD_H
+
+#include "problem/problem.h"
+
+PETSC_INTERN PetscErrorCode EqmDiskUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
+                                          PetscInt64 *after);
+PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
+                                            PetscInt64 *after);
+/* Requests to stop are answered between rounds (EqmProblemStopRequested). */
+PETSC_INTERN PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
+                                          PetscInt64 *after);
+
+#endif
