@@ -1,4 +1,4 @@
-/* CHOLMOD on one rank. Our lower triangle by rows is the upper triangle by columns that CHOLMOD reads in place. */
+/* CHOLMOD on one rank. */
 #include "linalg/linalg.h"
 #include "linalg/cholmod_name.h"
 #include <omp.h>
@@ -10,80 +10,19 @@ typedef struct {
   cholmod_dense *solution, *work_y, *work_e;
 } Cholmod;
 
-/* Look at the matrix as CHOLMOD sees it. Give the view back with RestoreView. */
-static PetscErrorCode GetView(EqmLinear linear, Mat *matrix)
-{
-  Cholmod *const c = linear->data;
-  const PetscInt *start, *column;
-  PetscScalar *value;
-  PetscInt n;
-  PetscBool done;
-
-  PetscFunctionBegin;
-  PetscCall(EqmAssemblyGetMat(linear->assembly, matrix));
-  PetscCall(MatGetRowIJ(*matrix, 0, PETSC_FALSE, PETSC_FALSE, &n, &start, &column, &done));
-  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no access to the rows of a matrix");
-  PetscCall(MatSeqAIJGetArray(*matrix, &value));
-  c->view = (cholmod_sparse){.nrow = (size_t)n,
-                             .ncol = (size_t)n,
-                             .nzmax = (size_t)start[n],
-                             .p = (void *)start,
-                             .i = (void *)column,
-                             .x = value,
-                             .stype = 1,
-                             .itype = c->common.itype,
-                             .xtype = CHOLMOD_REAL,
-                             .dtype = CHOLMOD_DOUBLE,
-                             .sorted = 1,
-                             .packed = 1};
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode RestoreView(EqmLinear linear, Mat matrix)
-{
-  Cholmod *const c = linear->data;
-  const PetscInt *start = c->view.p, *column = c->view.i;
-  PetscScalar *value = c->view.x;
-  PetscInt n = (PetscInt)c->view.nrow;
-  PetscBool done;
-
-  PetscFunctionBegin;
-  PetscCall(MatSeqAIJRestoreArray(matrix, &value));
-  PetscCall(MatRestoreRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &n, &start, &column, &done));
-  PetscFunctionReturn(0);
-}
-
-/* Add what a supernodal factor takes, from its symbolic half: blocks and their rows, the largest update block, a
-   permuted copy of the matrix, vectors. Not collective. */
-void EqmEstimateCholmod(const cholmod_factor *factor, const cholmod_common *common, EqmEstimate *estimate)
-{
-  enum { VECTORS = 12 }; /* three right-hand sides, their solutions and CHOLMOD's work spaces */
-
-  estimate->nonzeros += common->lnz;
-  estimate->flops += common->fl;
-  estimate->bytes_on_rank += (PetscReal)sizeof(PetscScalar) * ((PetscReal)factor->xsize + (PetscReal)factor->maxcsize +
-                                                               VECTORS * (PetscReal)factor->n) +
-                             (PetscReal)sizeof(PetscInt) * (PetscReal)factor->ssize +
-                             2. * (PetscReal)(sizeof(PetscScalar) + sizeof(PetscInt)) * common->anz;
-}
-
 static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
 {
   Cholmod *const c = linear->data;
-  PetscInt *position, *order;
-  Mat matrix;
+  PetscInt *order;
 
   PetscFunctionBegin;
-  PetscCall(EqmOrderingOfUnknowns(ordering, &linear->unknowns, &position));
+  PetscCall(EqmOrderingOfFactor(linear, ordering, &order));
   PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
-  PetscCall(PetscMalloc1(linear->num_unknowns, &order));
-  for (PetscInt k = 0; k < linear->num_unknowns; k++) order[position[k]] = k;
-  PetscCall(PetscFree(position));
-  PetscCall(GetView(linear, &matrix));
+  PetscCall(EqmCholmodGetView(linear, &c->view));
   c->common.nmethods = 1;
   c->common.method[0].ordering = CHOLMOD_GIVEN;
   c->factor = CHOLMOD(analyze_p)(&c->view, order, NULL, 0, &c->common);
-  PetscCall(RestoreView(linear, matrix));
+  PetscCall(EqmCholmodRestoreView(linear, &c->view));
   PetscCall(PetscFree(order));
   PetscCheck(c->factor, PETSC_COMM_SELF, PETSC_ERR_MEM,
              "CHOLMOD's analysis failed (status %d): too little memory for this mesh on one rank; use more",
@@ -96,16 +35,15 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
 static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
 {
   Cholmod *const c = linear->data;
-  Mat matrix;
 
   PetscFunctionBegin;
-  PetscCall(GetView(linear, &matrix));
+  PetscCall(EqmCholmodGetView(linear, &c->view));
   /* its own team of threads, whose number was fixed when it was built, costs more than it brings */
   const int levels = omp_get_max_active_levels();
   omp_set_max_active_levels(0);
   CHOLMOD(factorize)(&c->view, c->factor, &c->common);
   omp_set_max_active_levels(levels);
-  PetscCall(RestoreView(linear, matrix));
+  PetscCall(EqmCholmodRestoreView(linear, &c->view));
   PetscCheck(c->common.status >= 0, PETSC_COMM_SELF, PETSC_ERR_MEM,
              "CHOLMOD's factorisation failed (status %d): too little memory for this mesh on one rank; use more",
              c->common.status);

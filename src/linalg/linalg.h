@@ -66,6 +66,7 @@ PETSC_INTERN PetscErrorCode EqmDissect(PetscInt n, PetscInt *degree_then_start, 
 typedef enum {
   EQM_SOLVER_AUTO,
   EQM_SOLVER_CHOLMOD,
+  EQM_SOLVER_MULTIFRONTAL,
   EQM_SOLVER_SUBSTRUCTURE,
   EQM_SOLVER_MUMPS,
   EQM_SOLVER_MULTIGRID
@@ -142,6 +143,7 @@ PETSC_INTERN PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count,
 
 /* The kinds fill in the operations. */
 PETSC_INTERN PetscErrorCode EqmLinearSetUpCholmod(EqmLinear linear);
+PETSC_INTERN PetscErrorCode EqmLinearSetUpMultifrontal(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpSubstructure(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpMumps(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpMultigrid(EqmLinear linear);

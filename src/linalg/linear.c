@@ -1,8 +1,9 @@
 /* One face for the direct solvers and multigrid: which of them a matrix gets. What it does then: linear_solve.c. */
 #include "linalg/linalg.h"
 
-const char *const EqmSolverKinds[] = {"auto",      "cholmod",       "substructure", "mumps",
-                                      "multigrid", "EqmSolverKind", "EQM_SOLVER_",  NULL};
+const char *const EqmSolverKinds[] = {"auto",          "cholmod",     "multifrontal",
+                                      "substructure",  "mumps",       "multigrid",
+                                      "EqmSolverKind", "EQM_SOLVER_", NULL};
 
 /* Larger fronts take half a gigabyte on one rank, and minutes that the other ranks wait. */
 enum { MOST_FRONT = 8000 };
@@ -39,6 +40,9 @@ static PetscErrorCode Try(EqmLinear linear, EqmOrdering ordering, EqmSolverKind 
   switch (kind) {
   case EQM_SOLVER_CHOLMOD:
     PetscCall(EqmLinearSetUpCholmod(linear));
+    break;
+  case EQM_SOLVER_MULTIFRONTAL:
+    PetscCall(EqmLinearSetUpMultifrontal(linear));
     break;
   case EQM_SOLVER_SUBSTRUCTURE:
     PetscCall(EqmLinearSetUpSubstructure(linear));
@@ -79,11 +83,12 @@ static PetscBool IsCostly(EqmLinear linear)
 }
 
 /* In the plane and on surfaces an exact Cholesky factor beats multigrid at every size that fits in memory. On one rank
-   CHOLMOD solves two to three times faster than MUMPS; on several it eliminates what is inside each rank, which also
-   gives the same bits in every run, as long as what is left between the ranks is no burden. */
+   the multifrontal factor is the fastest on one thread already, and the one that uses several; on several ranks
+   substructuring gives the same bits in every run, as long as what is left between the ranks is no burden. */
 static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal limit)
 {
-  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD}, together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
+  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD},
+                             together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
   const PetscBool is_alone = (PetscBool)(linear->mesh->size == 1);
   const EqmSolverKind *const direct = is_alone ? alone : together;
   const PetscInt num_direct = is_alone ? 1 : 2;
@@ -109,9 +114,10 @@ static PetscErrorCode Obey(EqmLinear linear, EqmOrdering ordering, EqmSolverKind
   PetscBool fits;
 
   PetscFunctionBegin;
-  if (kind == EQM_SOLVER_CHOLMOD && linear->mesh->size > 1) {
+  if ((kind == EQM_SOLVER_CHOLMOD || kind == EQM_SOLVER_MULTIFRONTAL) && linear->mesh->size > 1) {
     EqmFail(comm, EQM_ERR_USAGE,
-            "-linear_solver cholmod works on one rank only; on several take substructure, mumps or multigrid");
+            "-linear_solver %s works on one rank only; on several take substructure, mumps or multigrid",
+            EqmSolverKinds[kind]);
   }
   PetscCall(Try(linear, ordering, kind));
   PetscCall(FitsInMemory(linear, limit, &fits));

@@ -112,7 +112,7 @@ PetscErrorCode EqmLinearTrySolve(EqmLinear linear, PetscInt num_rhs, const Petsc
                                  PetscBool *success)
 {
   EqmWork *work;
-  PetscReal bad = 0., worst;
+  int bad = 0;
 
   PetscFunctionBegin;
   *success = PETSC_TRUE;
@@ -122,11 +122,9 @@ PetscErrorCode EqmLinearTrySolve(EqmLinear linear, PetscInt num_rhs, const Petsc
   PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
   work->solves += num_rhs;
   if (!*success) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < num_rhs * linear->num_owned; k++) {
-    if (PetscIsInfOrNanReal(x[k])) bad = 1.;
-  }
-  PetscCall(MPIU_Allreduce(&bad, &worst, 1, MPIU_REAL, MPIU_MAX, linear->mesh->comm));
-  PetscCheck(worst == 0., linear->mesh->comm, PETSC_ERR_FP, "the solution of a linear system is not finite");
+  for (PetscInt k = 0; k < num_rhs * linear->num_owned; k++) bad |= !(PetscAbsReal(x[k]) <= PETSC_MAX_REAL);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MAX, linear->mesh->comm));
+  PetscCheck(bad == 0, linear->mesh->comm, PETSC_ERR_FP, "the solution of a linear system is not finite");
   PetscFunctionReturn(0);
 }
 
@@ -139,6 +137,6 @@ PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscRea
   PetscCall(EqmLinearTrySolve(linear, num_rhs, b, x, &success));
   PetscCheck(success, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
              "multigrid did not converge: the matrix may not be definite; try -linear_solver %s",
-             linear->mesh->size == 1 ? "cholmod" : "mumps");
+             linear->mesh->size == 1 ? "multifrontal" : "mumps");
   PetscFunctionReturn(0);
 }

@@ -7,9 +7,10 @@ PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject)
   PetscReal limit = 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsEnum("-linear_solver",
-                             "what solves with matrices; substructure and mumps are for several ranks, cholmod for one",
-                             "EqmLinearCreate", EqmSolverKinds, kind, &kind, NULL));
+  PetscCall(PetscOptionsEnum(
+      "-linear_solver",
+      "what solves with matrices; multifrontal and cholmod are for one rank, substructure and mumps for several",
+      "EqmLinearCreate", EqmSolverKinds, kind, &kind, NULL));
   PetscCall(
       PetscOptionsReal("-memory_limit",
                        "at most so many GiB per rank for factors; beyond, -linear_solver auto iterates (0: most of "

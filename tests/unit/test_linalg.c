@@ -2,6 +2,7 @@
  */
 #include "support/testing.h"
 #include <math.h>
+#include <omp.h>
 #include <string.h>
 
 enum { MOST_RHS = 4 };
@@ -24,8 +25,8 @@ static void ModelCell(void *context, PetscInt cell, PetscReal *matrix)
   const Model *const model = context;
   PetscInt list[EQM_MOST_CELL_UNKNOWNS], n = 0;
 
-  for (PetscInt a = 0; a < 3; a++) {
-    const PetscInt v = model->mesh->cells[3 * cell + a];
+  for (PetscInt a = 0; a < model->mesh->cell_size; a++) {
+    const PetscInt v = model->mesh->cells[model->mesh->cell_size * cell + a];
     for (PetscInt k = 0; k < model->unknowns.count[v]; k++) list[n++] = model->unknowns.start[v] + k;
   }
   for (PetscInt i = 0; i < n; i++) {
@@ -49,10 +50,10 @@ static PetscErrorCode ModelApply(Model *model, PetscReal diagonal, const PetscRe
   PetscCall(EqmMeshUpdateGhosts(mesh, 2, by_vertex));
   PetscCall(PetscArrayzero(y, u->num_owned));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
-    PetscInt row[6], n = 0;
-    PetscReal value[6];
-    for (PetscInt a = 0; a < 3; a++) {
-      const PetscInt v = mesh->cells[3 * c + a];
+    PetscInt row[EQM_MOST_CELL_UNKNOWNS], n = 0;
+    PetscReal value[EQM_MOST_CELL_UNKNOWNS];
+    for (PetscInt a = 0; a < mesh->cell_size; a++) {
+      const PetscInt v = mesh->cells[mesh->cell_size * c + a];
       for (PetscInt k = 0; k < u->count[v]; k++) {
         value[n] = by_vertex[2 * v + k];
         row[n++] = u->start[v] + k - u->first;
@@ -208,14 +209,15 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   PetscFunctionReturn(0);
 }
 
-/* CHOLMOD on several ranks is the user's mistake, and said so. */
-static PetscErrorCode TestCholmodOnSeveralRanks(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns)
+/* Solvers of one rank on several are the user's mistake, and said so. */
+static PetscErrorCode TestOnSeveralRanks(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
+                                         const char *option)
 {
   PetscOptions options;
   EqmLinear linear;
 
   PetscFunctionBegin;
-  PetscCall(TestOptionsBegin("-linear_solver cholmod", &options));
+  PetscCall(TestOptionsBegin(option, &options));
   CHECK_FAILS(EQM_ERR_USAGE, EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_SCALAR, &linear));
   PetscCall(TestOptionsEnd(&options));
   PetscFunctionReturn(0);
@@ -262,10 +264,13 @@ static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, Eq
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver substructure"));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver mumps"));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver multigrid"));
-  if (mesh->size == 1)
-    PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver cholmod"));
-  else
-    PetscCall(TestCholmodOnSeveralRanks(mesh, ordering, unknowns));
+  for (PetscInt k = 0; k < 2; k++) {
+    const char *const option = k ? "-linear_solver multifrontal" : "-linear_solver cholmod";
+    if (mesh->size == 1)
+      PetscCall(TestSolver(mesh, ordering, unknowns, use, option));
+    else
+      PetscCall(TestOnSeveralRanks(mesh, ordering, unknowns, option));
+  }
   PetscCall(TestMemory(mesh, ordering, unknowns));
   PetscCall(EqmOrderingDestroy(&ordering));
   PetscFunctionReturn(0);
@@ -297,6 +302,68 @@ static PetscErrorCode TestOnMesh(const char *shape, PetscInt n, const char *part
                                .count = domain->dof_count};
   PetscCall(TestUnknowns(test.mesh, &coupled, EQM_MATRIX_COUPLED));
   PetscCall(EqmDomainDestroy(&domain));
+  PetscCall(PetscFree(ones));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* One rank's factor and solutions on so many threads; `x` has room for 5 columns. */
+static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, int threads, PetscReal *x)
+{
+  Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5, .spoil = 1e3};
+  EqmOrdering ordering;
+  EqmLinear linear;
+  PetscOptions options;
+  PetscBool success = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  omp_set_num_threads(threads);
+  PetscCall(TestOptionsBegin("-linear_solver multifrontal", &options));
+  PetscCall(EqmOrderingCreate(mesh, &ordering));
+  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_COUPLED, &linear));
+  PetscCall(EqmLinearFactor(linear, ModelCell, &model, 1., &success));
+  CHECK(!success, "an indefinite matrix passes for definite on %d threads", threads);
+  model.spoil = 0.;
+  PetscCall(EqmLinearFactor(linear, ModelCell, &model, 1., &success));
+  CHECK(success, "a definite matrix is refused on %d threads", threads);
+  for (PetscInt i = 0; i < 5 * unknowns->num_owned; i++) x[i] = Entry(i, 3);
+  PetscCall(EqmLinearSolve(linear, 5, x, x));
+  PetscCall(EqmLinearDestroy(&linear));
+  PetscCall(EqmOrderingDestroy(&ordering));
+  PetscCall(TestOptionsEnd(&options));
+  PetscFunctionReturn(0);
+}
+
+/* The same bits for any number of threads, and a solution: a surface, with many branches, and a solid, with large
+   fronts. */
+static PetscErrorCode TestThreads(const char *shape, PetscInt n)
+{
+  TestMesh test;
+  unsigned char *ones;
+  PetscReal *x[2], *b;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 2, &test));
+  if (test.mesh->size > 1) {
+    PetscCall(TestMeshDestroy(&test));
+    PetscFunctionReturn(0);
+  }
+  const PetscInt size = 5 * test.mesh->num_owned;
+  PetscCall(PetscMalloc1(test.mesh->num_local, &ones));
+  for (PetscInt v = 0; v < test.mesh->num_local; v++) ones[v] = 1;
+  EqmUnknowns scalar = {.num_owned = test.mesh->num_owned, .start = test.mesh->global, .count = ones};
+  PetscCall(PetscMalloc3(size, &x[0], size, &x[1], size, &b));
+  PetscCall(SolveOnThreads(test.mesh, &scalar, 1, x[0]));
+  Model model = {.mesh = test.mesh, .unknowns = scalar, .shift = .5};
+  for (PetscInt i = 0; i < size; i++) b[i] = Entry(i, 3);
+  for (PetscInt k = 0; k < 5; k++)
+    PetscCall(CheckResidual(&model, 1., b + k * scalar.num_owned, x[0] + k * scalar.num_owned, 1e-12));
+  for (int threads = 2; threads <= 5; threads++) {
+    PetscCall(SolveOnThreads(test.mesh, &scalar, threads, x[1]));
+    CHECK(!memcmp(x[0], x[1], (size_t)size * sizeof(PetscReal)), "other bits on %d threads, %s", threads, shape);
+  }
+  omp_set_num_threads(1);
+  PetscCall(PetscFree3(x[0], x[1], b));
   PetscCall(PetscFree(ones));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);
@@ -339,6 +406,8 @@ int main(int argc, char **argv)
   PetscCall(TestOnMesh("hills", 900, "-partition metis"));
   PetscCall(TestOnMesh("hills", 300, "-partition slab")); /* shares of many pieces */
   PetscCall(TestOnMesh("hills", 16, "-partition slab"));  /* ranks with nothing inside */
+  PetscCall(TestThreads("hills", 12000));
+  PetscCall(TestThreads("ball", 9000));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,60 @@
+/* The multifrontal factor as a linear solver: one rank, any number of threads. */
+#include "linalg/frontal.h"
+
+static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
+{
+  EqmFrontal frontal;
+  cholmod_sparse view;
+  PetscInt *order;
+
+  PetscFunctionBegin;
+  PetscCall(EqmOrderingOfFactor(linear, ordering, &order));
+  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
+  PetscCall(EqmCholmodGetView(linear, &view));
+  PetscCall(EqmFrontalCreate(&view, order, &frontal));
+  linear->data = frontal;
+  PetscCall(EqmCholmodRestoreView(linear, &view));
+  PetscCall(PetscFree(order));
+  PetscCall(EqmFrontalGetCost(frontal, &linear->estimate));
+  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
+{
+  const EqmFrontal frontal = linear->data;
+  cholmod_sparse view;
+
+  PetscFunctionBegin;
+  PetscCall(EqmCholmodGetView(linear, &view));
+  PetscCall(EqmFrontalFactor(frontal, view.x, success));
+  PetscCall(EqmCholmodRestoreView(linear, &view));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmFrontalSolve(linear->data, num_rhs, b, x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(EqmLinear linear)
+{
+  EqmFrontal frontal = linear->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmFrontalDestroy(&frontal));
+  linear->data = NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLinearSetUpMultifrontal(EqmLinear linear)
+{
+  PetscFunctionBegin;
+  linear->analyse = Analyse;
+  linear->factor = Factor;
+  linear->solve = Solve;
+  linear->destroy = Destroy;
+  PetscFunctionReturn(0);
+}
