@@ -43,5 +43,6 @@ def generate(args, row):
         if done.returncode:
             raise TableError(f"row {row.number}: cannot generate {name}: {done.stdout.strip()[-200:]}")
         os.replace(part, mesh)
-        part.with_suffix(".xmf").unlink(missing_ok=True)
+        for suffix in (".xmf", ".map.xmf"):
+            part.with_suffix(suffix).unlink(missing_ok=True)
     return places

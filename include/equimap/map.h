@@ -154,8 +154,9 @@ PETSC_EXTERN PetscErrorCode EqmMapAddText(EqmMap map, const char *key, const cha
 /* ---- files */
 
 /* EqmMapWrite - write a result to every name in the comma-separated `files`, the format by suffix. .h5 holds everything
-   and gets an .xmf for ParaView beside it; the mesh formats hold the mesh with its vertices at their images (z = 0 for
-   planar maps) and, where the format can, the fields. Each file appears whole or not at all, and one that was there
+   and gets .xmf files for ParaView beside it; the mesh formats hold the mesh with its vertices at their images (z = 0 for
+   planar maps) and, where the format can, the fields; NAME.vtu gets NAME.surface.vtu beside it, which holds the input
+   mesh with the map as fields. Each file appears whole or not at all, and one that was there
    survives a failure. Collective. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWrite(EqmMap map, const char *files);
 /* EqmMapCheckWritable - can `files` be written? For before a long run. Suffixes must be known, directories there and

@@ -17,6 +17,7 @@ typedef struct {
   PetscInt *cells;     /* cell_size * num_cells; PetscMalloc'ed */
   PetscReal *texture;  /* 2 * cell_size * num_cells, the texture coordinates of each corner, or NULL; PetscMalloc'ed */
   char note[EQM_SOUP_NOTE]; /* what the reader changed, in plain words; "": nothing */
+  char *metadata;           /* what the file says beside the mesh, lines "key<tab>value", or NULL; PetscMalloc'ed */
 } EqmSerialMesh;
 
 /* A slab of the file's mesh on each rank. Public fields, read-only after creation. */
@@ -33,6 +34,7 @@ struct _p_EqmSoup {
   PetscReal *edge_length; /* per cell of the slab and corner, of the edge opposite; NULL: edges are straight in space */
   char file[PETSC_MAX_PATH_LEN]; /* where it came from */
   char note[EQM_SOUP_NOTE];      /* what its reader changed, in plain words; "": nothing */
+  char *metadata;                /* what the file says beside the mesh, the same on every rank, or NULL */
   PetscInt64 checksum;           /* CRC-32 of vertices and cells in input order, rank-independent */
 };
 

@@ -220,8 +220,9 @@ const char *EqmOptionValueName(const EqmOption *option)
   static const char *const names[EQM_NUM_OPTION_KINDS] = {"", "N", "X", "NAME", "NAME", "N,N,...", "X,X,..."};
   static const char *const of_files[] = {"file", "CSV", "JSON", ".h5", ".png", "format", "checkpoint", "the map of"};
 
+  if (!strcmp(option->name, "-log_view")) return "[:FILE]";
   for (size_t k = 0; k < sizeof(of_files) / sizeof(of_files[0]) && option->kind == EQM_OPTION_TEXT; k++) {
     if (strstr(option->purpose, of_files[k])) return "FILE";
   }
-  return strcmp(option->name, "-log_view") ? names[option->kind] : "[:FILE]";
+  return names[option->kind];
 }

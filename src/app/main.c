@@ -153,6 +153,16 @@ static int RankOfLauncher(PetscBool *launched)
   return 0;
 }
 
+/* Alone, Open MPI would first start a daemon, which takes longer than a small map. Without the daemon all such runs of
+   a user have one folder for temporary files, which the first that ends removes from under the others: no folder, then,
+   and no shared file pointers, which would lie there and which we do not use. What the user has set stays. */
+static void StartWithoutDaemon(void)
+{
+  (void)setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  (void)setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+  (void)setenv("OMPI_MCA_sharedfp", "^sm", 0);
+}
+
 int main(int argc, char **argv)
 {
   EqmCommandLine line = {0};
@@ -165,8 +175,7 @@ int main(int argc, char **argv)
 
   if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return EQM_STATUS_INTERNAL;
   if (line.version || !line.command) return EqmIntroduce(&line, rank);
-  /* alone, Open MPI would start a daemon first, which takes longer than a small map */
-  if (!launched) (void)setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  if (!launched) StartWithoutDaemon();
   argc = num_options;
   argv = options;
   if (EqmInitialize(&argc, &argv)) return EQM_STATUS_INTERNAL;

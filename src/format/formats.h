@@ -10,6 +10,8 @@
   X(Vtp)                                                                                                               \
   X(Gifti)                                                                                                             \
   X(Vtk)                                                                                                               \
+  X(Freesurfer)                                                                                                        \
+  X(Curvature)                                                                                                         \
   X(Gmsh)                                                                                                              \
   X(Medit)                                                                                                             \
   X(Meshb)                                                                                                             \

@@ -2,9 +2,11 @@
 #define _GNU_SOURCE
 #include "builder.h"
 #include "encoding.h"
+#include "metadata.h"
 #include "writers.h"
 #include "xml.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -190,7 +192,41 @@ static PetscErrorCode ParseArrays(EqmInput *in, xmlNodePtr root, const char *int
   return 0;
 }
 
-static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder)
+/* The text of a child element, cut to `length`. */
+static void GetChildText(xmlNodePtr parent, const char *name, char *value, size_t length)
+{
+  xmlNodePtr child = EqmXmlChild(parent, name);
+  xmlChar *text = child ? xmlNodeGetContent(child) : NULL;
+
+  snprintf(value, length, "%s", text ? (const char *)text : "");
+  if (text) xmlFree(text);
+}
+
+/* Anatomical structure and coordinate system of the point set, for the files that the mesh goes into. */
+static PetscErrorCode KeepMetadata(xmlNodePtr root, char **metadata)
+{
+  static const char *const space[] = {"DataSpace", "TransformedSpace", "MatrixData"};
+  xmlNodePtr node = EqmXmlChild(root, "DataArray");
+  char intent[64], name[64], value[1024];
+
+  for (; node; node = EqmXmlNext(node, "DataArray")) {
+    EqmXmlAttribute(node, "Intent", intent, sizeof(intent));
+    if (!strcmp(intent, "NIFTI_INTENT_POINTSET")) break;
+  }
+  if (!node) return 0;
+  for (xmlNodePtr md = EqmXmlChild(EqmXmlChild(node, "MetaData"), "MD"); md; md = EqmXmlNext(md, "MD")) {
+    GetChildText(md, "Name", name, sizeof(name));
+    GetChildText(md, "Value", value, sizeof(value));
+    if (name[0]) EqmTry(EqmMetadataAdd(metadata, name, value));
+  }
+  for (int i = 0; i < 3; ++i) {
+    GetChildText(EqmXmlChild(node, "CoordinateSystemTransformMatrix"), space[i], value, sizeof(value));
+    EqmTry(EqmMetadataAdd(metadata, space[i], value));
+  }
+  return 0;
+}
+
+static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder, char **metadata)
 {
   xmlDocPtr document;
   PetscErrorCode code = EqmXmlParse(in, in->start, EqmRemaining(in), &document);
@@ -199,6 +235,7 @@ static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder)
   if (!code && !EqmXmlIs(root, "GIFTI")) code = EqmReject(in, EQM_ERR_IO, "a GIFTI file has the root element GIFTI");
   if (!code) code = ParseArrays(in, root, "NIFTI_INTENT_POINTSET", ParsePoints, builder);
   if (!code) code = ParseArrays(in, root, "NIFTI_INTENT_TRIANGLE", ParseTriangles, builder);
+  if (!code) code = KeepMetadata(root, metadata);
   if (document) xmlFreeDoc(document);
   return code;
 }
@@ -209,10 +246,17 @@ static PetscErrorCode ParseGifti(const char *bytes, size_t length, EqmSerialMesh
 {
   EqmInput in;
   EqmBuilder builder;
+  char *metadata = NULL;
+  PetscErrorCode code;
 
   EqmInputOpen(&in, bytes, length, error, error_length);
   EqmBuilderOpen(&builder, &in);
-  return EqmBuilderFinish(&builder, ParseMesh(&in, &builder), mesh);
+  code = EqmBuilderFinish(&builder, ParseMesh(&in, &builder, &metadata), mesh);
+  if (code)
+    EqmTry(PetscFree(metadata));
+  else
+    mesh->metadata = metadata;
+  return code;
 }
 
 EQM_DEFINE_FORMAT(Gifti) = {

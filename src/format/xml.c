@@ -7,12 +7,16 @@
 #include <string.h>
 #include <libxml/parser.h>
 
-/* Entities are a way to make a small file use all memory; no mesh needs them. */
-static PetscBool HasEntities(const char *text, size_t length)
+/* Entities are a way to make a small file use all memory; no mesh needs them. The parser itself reports their
+   declarations, whatever encoding the file has. A document type without declarations, as GIFTI files have it, is fine.
+ */
+static void RefuseEntity(void *data, const xmlChar *name, int type, const xmlChar *public_id, const xmlChar *system_id,
+                         xmlChar *content)
 {
-  static const char entity[] = "<!ENTITY";
+  xmlParserCtxtPtr context = data;
 
-  return memmem(text, length, entity, sizeof(entity) - 1) ? PETSC_TRUE : PETSC_FALSE;
+  *(PetscBool *)context->_private = PETSC_TRUE;
+  xmlStopParser(context);
 }
 
 static PetscErrorCode RejectDocument(EqmInput *in, xmlParserCtxtPtr context)
@@ -32,16 +36,26 @@ PetscErrorCode EqmXmlParse(EqmInput *in, const char *text, size_t length, xmlDoc
   const size_t large = 10000000; /* from here on libxml2 needs the option for long texts */
   int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_NOCDATA | XML_PARSE_BIG_LINES;
   xmlParserCtxtPtr context;
+  PetscBool has_entities = PETSC_FALSE;
   PetscErrorCode code = 0;
 
   *document = NULL;
   if (length > INT_MAX)
     return EqmReject(in, EQM_ERR_IO, "more than 2 GB of XML: save with appended raw data, or as HDF5");
-  if (HasEntities(text, length)) return EqmReject(in, EQM_ERR_IO, "XML entities are not supported");
   if (length >= large) options |= XML_PARSE_HUGE;
   context = xmlNewParserCtxt();
-  if (context) *document = xmlCtxtReadMemory(context, text, (int)length, NULL, NULL, options);
-  if (!*document) code = RejectDocument(in, context);
+  if (context) {
+    context->_private = &has_entities;
+    context->sax->entityDecl = RefuseEntity;
+    *document = xmlCtxtReadMemory(context, text, (int)length, NULL, NULL, options);
+  }
+  if (has_entities) {
+    if (*document) xmlFreeDoc(*document);
+    *document = NULL;
+    code = EqmReject(in, EQM_ERR_IO, "XML entities are not supported");
+  } else if (!*document) {
+    code = RejectDocument(in, context);
+  }
   if (context) xmlFreeParserCtxt(context);
   return code;
 }

@@ -67,6 +67,21 @@ static PetscErrorCode Transfer(MPI_Comm comm, PetscBool deal, MPI_Datatype numbe
   PetscFunctionReturn(0);
 }
 
+/* The text that rank 0 holds, or NULL, to all ranks. Collective. */
+static PetscErrorCode ShareText(MPI_Comm comm, char **text)
+{
+  PetscMPIInt rank, length = 0;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0 && *text) PetscCall(PetscMPIIntCast((PetscInt)strlen(*text) + 1, &length));
+  PetscCallMPI(MPI_Bcast(&length, 1, MPI_INT, 0, comm));
+  if (!length) PetscFunctionReturn(0);
+  if (rank != 0) PetscCall(PetscMalloc1(length, text));
+  PetscCallMPI(MPI_Bcast(*text, length, MPI_CHAR, 0, comm));
+  PetscFunctionReturn(0);
+}
+
 /* Deal the rows that rank 0 holds; its own slab is the beginning of its array, which shrinks. */
 static PetscErrorCode Deal(MPI_Comm comm, PetscInt total, MPI_Datatype number, PetscInt width, PetscMPIInt tag,
                            void *all, PetscInt *num_local, void **slab)
@@ -111,9 +126,11 @@ PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const
   PetscCall(Deal(comm, shape[0], MPIU_REAL, 3, TAG_VERTICES, mesh.vertices, &num_vertices, &vertices));
   PetscCall(Deal(comm, shape[1], MPIU_INT, shape[2], TAG_CELLS, mesh.cells, &num_cells, &cells));
   PetscCall(PetscFree(mesh.texture)); /* a soup has none */
+  PetscCall(ShareText(comm, &mesh.metadata));
   PetscCallMPI(MPI_Bcast(mesh.note, EQM_SOUP_NOTE, MPI_CHAR, 0, comm));
   PetscCall(EqmSoupCreateFromSlabs(comm, shape[2], num_vertices, vertices, num_cells, cells, file, soup));
   PetscCall(PetscStrncpy((*soup)->note, mesh.note, EQM_SOUP_NOTE));
+  (*soup)->metadata = mesh.metadata;
   PetscFunctionReturn(0);
 }
 
@@ -143,6 +160,7 @@ PetscErrorCode EqmSoupGather(EqmSoup soup, EqmSerialMesh *serial)
     serial->num_vertices = soup->num_vertices;
     serial->num_cells = soup->num_cells;
     serial->cell_size = soup->cell_size;
+    PetscCall(PetscStrallocpy(soup->metadata, &serial->metadata));
     PetscCall(PetscMalloc1(3 * (size_t)soup->num_vertices, &serial->vertices));
     PetscCall(PetscMalloc1(width * (size_t)soup->num_cells, &serial->cells));
     PetscCall(PetscArraycpy(serial->vertices, soup->vertices, 3 * (size_t)soup->vertex_end));

@@ -75,6 +75,7 @@ PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
   PetscFunctionBegin;
   PetscCall(PetscNew(&s));
   *s = *soup;
+  PetscCall(PetscStrallocpy(soup->metadata, &s->metadata));
   s->density = s->edge_length = NULL;
   PetscCall(PetscMalloc1(3 * num_vertices, &s->vertices));
   PetscCall(PetscMalloc1(width * num_cells, &s->cells));
@@ -100,6 +101,7 @@ PetscErrorCode EqmSoupDestroy(EqmSoup *soup)
   PetscCall(PetscFree((*soup)->cells));
   PetscCall(PetscFree((*soup)->density));
   PetscCall(PetscFree((*soup)->edge_length));
+  PetscCall(PetscFree((*soup)->metadata));
   PetscCall(PetscFree(*soup));
   PetscFunctionReturn(0);
 }
@@ -110,6 +112,7 @@ PetscErrorCode EqmSerialMeshReset(EqmSerialMesh *serial)
   PetscCall(PetscFree(serial->vertices));
   PetscCall(PetscFree(serial->cells));
   PetscCall(PetscFree(serial->texture));
+  PetscCall(PetscFree(serial->metadata));
   memset(serial, 0, sizeof(*serial));
   PetscFunctionReturn(0);
 }

@@ -1,8 +1,22 @@
-/* The image mesh: the input's cells with every vertex at its image, in any mesh format. */
+/* A map in mesh formats: the input's cells with every vertex at its image, or at its place with its image as a field.
+ */
 #include "store/map_private.h"
 #include "store/store.h"
 #include "format/format.h"
 #include "base/rows.h"
+#include <string.h>
+
+enum { MOST_FIELDS = 8 };
+
+/* Everything on rank 0; empty elsewhere. */
+typedef struct {
+  EqmSerialMesh mesh;
+  PetscReal *images; /* dim per vertex */
+  PetscReal *points; /* 3 per vertex: the input, or its image with z = 0 for planar maps */
+  PetscReal *arrays[MOST_FIELDS];
+  EqmField fields[MOST_FIELDS];
+  PetscInt num_fields;
+} Gathered;
 
 /* Bring slabs of reals together on rank 0, where `all` has room for them. */
 static PetscErrorCode GatherReals(MPI_Comm comm, PetscInt width, PetscInt count, const PetscReal *slab, PetscReal *all)
@@ -20,46 +34,117 @@ static PetscErrorCode GatherReals(MPI_Comm comm, PetscInt width, PetscInt count,
   PetscFunctionReturn(0);
 }
 
-/* On rank 0, put the images in the place of the vertices. */
-static PetscErrorCode MoveVertices(EqmMap map, EqmSerialMesh *serial)
+static void AddField(Gathered *all, const char *name, PetscBool on_cells, PetscInt width, const PetscReal *values)
 {
-  const PetscInt count = map->soup->vertex_end - map->soup->vertex_start;
-  PetscReal *images;
+  all->fields[all->num_fields++] = (EqmField){name, on_cells, width, values};
+}
+
+/* A field of one real per cell or vertex. */
+static PetscErrorCode GatherField(EqmMap map, const char *name, PetscBool on_cells, const PetscReal *slab,
+                                  Gathered *all)
+{
+  const EqmSoup soup = map->soup;
+  const PetscInt count = on_cells ? soup->cell_end - soup->cell_start : soup->vertex_end - soup->vertex_start;
+  PetscReal **const values = &all->arrays[all->num_fields];
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(map->dim * serial->num_vertices, &images));
-  PetscCall(GatherReals(map->soup->comm, map->dim, count, map->coordinates, images));
-  for (PetscInt i = 0; i < serial->num_vertices; i++) {
-    for (PetscInt d = 0; d < 3; d++) serial->vertices[3 * i + d] = d < map->dim ? images[map->dim * i + d] : 0.0;
-  }
-  PetscCall(PetscFree(images));
+  PetscCall(PetscMalloc1(on_cells ? all->mesh.num_cells : all->mesh.num_vertices, values));
+  PetscCall(GatherReals(soup->comm, 1, count, slab, *values));
+  AddField(all, name, on_cells, 1, *values);
   PetscFunctionReturn(0);
 }
 
-/* Write the mesh with its vertices at their images (z = 0 for planar maps), and the ratios where the format has room
-   for fields. Errors: EQM_ERR_IO on all ranks. Collective; rank 0 gathers and writes. */
-PetscErrorCode EqmMapWriteImage(EqmMap map, const char *file)
+static PetscErrorCode Gather(EqmMap map, Gathered *all)
 {
-  EqmSoup soup = map->soup;
-  char message[EQM_MESSAGE_MAX] = "";
-  PetscReal *cell_ratio, *vertex_ratio;
-  PetscErrorCode error = 0;
-  EqmSerialMesh serial;
-  PetscMPIInt rank;
+  const EqmSoup soup = map->soup;
+  PetscInt n;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
-  PetscCall(EqmSoupGather(soup, &serial));
-  PetscCall(MoveVertices(map, &serial));
-  PetscCall(PetscMalloc2(serial.num_cells, &cell_ratio, serial.num_vertices, &vertex_ratio));
-  PetscCall(GatherReals(soup->comm, 1, soup->cell_end - soup->cell_start, map->cell_ratio, cell_ratio));
-  PetscCall(GatherReals(soup->comm, 1, soup->vertex_end - soup->vertex_start, map->vertex_ratio, vertex_ratio));
-  if (rank == 0) {
-    const EqmField fields[] = {{"ratio", PETSC_TRUE, 1, cell_ratio}, {"vertex_ratio", PETSC_FALSE, 1, vertex_ratio}};
-    error = EqmFormatWriteSerial(file, &serial, fields, 2, message, sizeof(message));
+  PetscCall(PetscMemzero(all, sizeof(*all)));
+  PetscCall(EqmSoupGather(soup, &all->mesh));
+  n = all->mesh.num_vertices;
+  PetscCall(PetscMalloc1(map->dim * n, &all->images));
+  PetscCall(GatherReals(soup->comm, map->dim, soup->vertex_end - soup->vertex_start, map->coordinates, all->images));
+  PetscCall(PetscCalloc1(3 * n, &all->points));
+  PetscCall(GatherField(map, "ratio", PETSC_TRUE, map->cell_ratio, all));
+  PetscCall(GatherField(map, "vertex_ratio", PETSC_FALSE, map->vertex_ratio, all));
+  if (soup->cell_size == 4) PetscFunctionReturn(0);
+  PetscCall(GatherField(map, "quasi_conformal", PETSC_TRUE, map->quasi_conformal, all));
+  PetscCall(GatherField(map, "conformal_factor", PETSC_FALSE, map->conformal_factor, all));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Reset(Gathered *all)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < MOST_FIELDS; k++) PetscCall(PetscFree(all->arrays[k]));
+  PetscCall(PetscFree(all->images));
+  PetscCall(PetscFree(all->points));
+  PetscCall(EqmSerialMeshReset(&all->mesh));
+  PetscFunctionReturn(0);
+}
+
+/* On rank 0: exchange the places of the vertices and `points`, their images. */
+static void MoveVertices(PetscInt dim, Gathered *all)
+{
+  for (PetscInt i = 0; i < all->mesh.num_vertices; i++) {
+    for (PetscInt d = 0; d < 3; d++) {
+      all->points[3 * i + d] = all->mesh.vertices[3 * i + d];
+      all->mesh.vertices[3 * i + d] = d < dim ? all->images[dim * i + d] : 0.;
+    }
   }
-  PetscCall(PetscFree2(cell_ratio, vertex_ratio));
-  PetscCall(EqmSerialMeshReset(&serial));
-  PetscCall(EqmAgree(soup->comm, error, message));
+}
+
+/* On rank 0: the map as fields of the mesh, u and v in the plane. */
+static PetscErrorCode AddImages(PetscInt dim, Gathered *all)
+{
+  static const char *const names[] = {"u", "v"};
+  const PetscInt n = all->mesh.num_vertices;
+
+  PetscFunctionBegin;
+  if (dim == 3) AddField(all, "map", PETSC_FALSE, 3, all->images);
+  for (PetscInt d = 0; d < dim && dim == 2; d++) {
+    PetscReal **const values = &all->arrays[all->num_fields];
+    PetscCall(PetscMalloc1(n, values));
+    for (PetscInt i = 0; i < n; i++) (*values)[i] = all->images[2 * i + d];
+    AddField(all, names[d], PETSC_FALSE, 1, *values);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* On rank 0. Both files, or EQM_ERR_IO with a sentence in `message`. */
+static PetscErrorCode WriteFiles(EqmMap map, const char *file, Gathered *all, char *message, size_t length,
+                                 PetscErrorCode *error)
+{
+  const PetscInt num_fields = all->num_fields;
+  char name[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  if (EqmHasSuffix(file, ".vtu")) {
+    PetscCall(AddImages(map->dim, all));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%.*s.surface.vtu", (int)(strlen(file) - strlen(".vtu")), file));
+    *error = EqmFormatWriteSerial(name, &all->mesh, all->fields, all->num_fields, message, length);
+    if (*error) PetscFunctionReturn(0);
+    all->num_fields = num_fields;
+  }
+  MoveVertices(map->dim, all);
+  if (EqmHasSuffix(file, ".vtu") || EqmHasSuffix(file, ".vtk")) AddField(all, "surface", PETSC_FALSE, 3, all->points);
+  *error = EqmFormatWriteSerial(file, &all->mesh, all->fields, all->num_fields, message, length);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMapWriteImage(EqmMap map, const char *file)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode error = 0;
+  PetscMPIInt rank;
+  Gathered all;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(map->soup->comm, &rank));
+  PetscCall(Gather(map, &all));
+  if (rank == 0) PetscCall(WriteFiles(map, file, &all, message, sizeof(message), &error));
+  PetscCall(Reset(&all));
+  PetscCall(EqmAgree(map->soup->comm, error, message));
   PetscFunctionReturn(0);
 }

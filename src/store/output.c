@@ -47,7 +47,7 @@ PetscErrorCode EqmCheckOutput(MPI_Comm comm, const char *mesh, const char *files
 /* Of a file, and of those that are written beside a result. */
 static PetscErrorCode Sweep(const char *file)
 {
-  static const char *const suffixes[] = {".xmf", ".morph.xmf"};
+  static const char *const suffixes[] = {".xmf", ".map.xmf", ".morph.xmf"};
   char name[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;

@@ -17,7 +17,7 @@ PETSC_INTERN PetscBool EqmHasSuffix(const char *name, const char *suffix);
 PETSC_INTERN PetscErrorCode EqmNameBeside(const char *file, const char *suffix, char *name, size_t length);
 /* Write the result file: everything about the map. Collective. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteResult(EqmMap map, const char *file);
-/* Write NAME.xmf beside the result NAME.h5 for ParaView. Collective; rank 0 writes. Errors: EQM_ERR_IO. */
+/* Write NAME.xmf, the mesh, and NAME.map.xmf, its image, beside the result NAME.h5 for ParaView. Collective; rank 0 writes. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file);
 /* The array of the result file that holds the points of frame number %d of a morph. */
 #define EQM_FRAME_PATH "/morph/frame_%03" PetscInt_FMT

@@ -1,4 +1,5 @@
-/* The XDMF file beside a result: XML that tells ParaView what the HDF5 file holds. */
+/* The XDMF files beside a result: XML that tells ParaView what the HDF5 file holds. The mesh and its image have a file
+   each, so that neither hides the other. */
 #include "store/map_private.h"
 #include "store/store.h"
 #include "base/atomicfile.h"
@@ -50,13 +51,13 @@ static void Array(Writer *writer, const char *path, const char *type, PetscInt r
   Close(writer);
 }
 
-static void Field(Writer *writer, const char *name, const char *center, const char *path, PetscInt rows)
+static void Field(Writer *writer, const char *name, const char *center, const char *path, PetscInt rows, PetscInt width)
 {
   Open(writer, "Attribute");
   Attribute(writer, "Name", name);
-  Attribute(writer, "AttributeType", "Scalar");
+  Attribute(writer, "AttributeType", width == 1 ? "Scalar" : width == 3 ? "Vector" : "Matrix");
   Attribute(writer, "Center", center);
-  Array(writer, path, "Float", rows, 1);
+  Array(writer, path, "Float", rows, width);
   Close(writer);
 }
 
@@ -78,24 +79,33 @@ static void Grid(Writer *writer, const char *name, EqmSoup soup, const char *poi
   Attribute(writer, "GeometryType", dim == 3 ? "XYZ" : "XY");
   Array(writer, points, "Float", soup->num_vertices, dim);
   Close(writer);
-  Field(writer, "ratio", "Cell", "/cell/ratio", soup->num_cells);
-  Field(writer, "vertex_ratio", "Node", "/vertex/ratio", soup->num_vertices);
+  Field(writer, "ratio", "Cell", "/cell/ratio", soup->num_cells, 1);
+  Field(writer, "vertex_ratio", "Node", "/vertex/ratio", soup->num_vertices, 1);
   if (soup->cell_size == 3) {
-    Field(writer, "quasi_conformal", "Cell", "/cell/quasi_conformal", soup->num_cells);
-    Field(writer, "conformal_factor", "Node", "/vertex/conformal_factor", soup->num_vertices);
+    Field(writer, "quasi_conformal", "Cell", "/cell/quasi_conformal", soup->num_cells, 1);
+    Field(writer, "conformal_factor", "Node", "/vertex/conformal_factor", soup->num_vertices, 1);
   }
-  if (soup->density) Field(writer, "density", "Cell", "/cell/density", soup->num_cells);
+  if (soup->density) Field(writer, "density", "Cell", "/cell/density", soup->num_cells, 1);
 }
 
 /* The grids of a document. */
 typedef void (*Body)(Writer *writer, EqmMap map, PetscInt num_frames);
 
-static void MeshAndMap(Writer *writer, EqmMap map, PetscInt num_frames)
+/* The mesh; every vertex has its image as a field. */
+static void Mesh(Writer *writer, EqmMap map, PetscInt num_frames)
 {
   (void)num_frames;
   Grid(writer, "mesh", map->soup, "/mesh/vertices", 3);
+  Field(writer, "map", "Node", "/map/coordinates", map->soup->num_vertices, map->dim);
   Close(writer);
+}
+
+/* The image; every vertex has its place on the mesh as a field. */
+static void Image(Writer *writer, EqmMap map, PetscInt num_frames)
+{
+  (void)num_frames;
   Grid(writer, "map", map->soup, "/map/coordinates", map->dim);
+  Field(writer, "mesh", "Node", "/mesh/vertices", map->soup->num_vertices, 3);
   Close(writer);
 }
 
@@ -167,17 +177,14 @@ static PetscErrorCode Write(EqmMap map, const char *result_file, const char *suf
   PetscFunctionReturn(0);
 }
 
-/* Write NAME.xmf beside the result NAME.h5: the mesh and the map as two grids with their fields. Errors: EQM_ERR_IO on
-   all ranks. Collective; rank 0 writes. */
 PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file)
 {
   PetscFunctionBegin;
-  PetscCall(Write(map, result_file, ".xmf", MeshAndMap, 0));
+  PetscCall(Write(map, result_file, ".xmf", Mesh, 0));
+  PetscCall(Write(map, result_file, ".map.xmf", Image, 0));
   PetscFunctionReturn(0);
 }
 
-/* Write NAME.morph.xmf beside the result NAME.h5: its frames as a time series from 0 to 1. Errors: EQM_ERR_IO on all
-   ranks. Collective; rank 0 writes. */
 PetscErrorCode EqmMapWriteMorph(EqmMap map, const char *result_file, PetscInt num_frames)
 {
   PetscFunctionBegin;

@@ -109,6 +109,16 @@ def check_without_mpi(program):
     assert program.succeed("--version").stdout.count("equimap ") == 1  # once, on any number of ranks
 
 
+def check_side_by_side(program):
+    """Many runs alone at the same time do not take each other's temporary files away."""
+    names = [f"side{k}.h5" for k in range(12)]
+    runs = [program.start("disk", "mesh.obj", "-o", name, "-max_it", 0, "-quiet", ranks=1) for name in names]
+    for name, run in zip(names, runs):
+        output = run.communicate(timeout=120)[0]
+        assert run.returncode == 4 and "Error" not in output, f"{name}: exit code {run.returncode}\n{output}"
+        assert os.path.getsize(program.file(name)) > 10000, name
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
@@ -119,6 +129,7 @@ def main():
         check_log_view(program)
         if program.ranks == 1:
             check_help(program)
+            check_side_by_side(program)
         check_without_mpi(program)
     print("options as they should be")
 

@@ -3,11 +3,14 @@ mesh whose vertices and triangles are in no good order, with and without a densi
 
 usage: python3 test_result.py EQUIMAP [RANKS]
 """
+import base64
 import csv
 import json
 import os
+import re
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 import h5py
 import numpy
@@ -89,6 +92,41 @@ def check_target(command, image, cells):
             assert (boundary == corner).all(axis=1).sum() == 1, corner
 
 
+def fields_of(program):
+    with h5py.File(program.file("out.h5"), "r") as result:
+        return {"ratio": result["/cell/ratio"][...], "vertex_ratio": result["/vertex/ratio"][...],
+                "quasi_conformal": result["/cell/quasi_conformal"][...], "conformal_factor": result["/vertex/conformal_factor"][...]}
+
+
+def check_vtu(program, name, points, fields):
+    """The points and the fields of a VTU file, bit for bit, and no other fields."""
+    head, tail = program.read(name).split(b'encoding="base64">\n_', 1)
+    arrays = {}
+    for element in re.findall(rb"<DataArray [^>]*>", head):
+        array = dict(re.findall(rb'(\w+)="([^"]*)"', element))
+        if array[b"type"] == b"Float64":
+            text = tail[int(array[b"offset"]):]
+            size = int.from_bytes(base64.b64decode(text[:12])[:8], "little")
+            arrays[array[b"Name"].decode()] = numpy.frombuffer(base64.b64decode(text[:4 * ((8 + size + 2) // 3)])[8:8 + size])
+    assert numpy.array_equal(arrays.pop("Points").reshape(points.shape), points), name
+    assert set(arrays) == set(fields), (name, set(arrays))
+    for field, values in fields.items():
+        assert numpy.array_equal(arrays[field], values.ravel()), (name, field)
+
+
+def check_xdmf(program, name):
+    """Both files beside the result: what they name is there and has the shape that they say."""
+    with h5py.File(program.file(name + ".h5"), "r") as result:
+        for suffix, grid, points in ((".xmf", "mesh", "/mesh/vertices"), (".map.xmf", "map", "/map/coordinates")):
+            root = xml.etree.ElementTree.parse(program.file(name + suffix)).getroot()
+            assert [found.get("Name") for found in root.iter("Grid")] == [grid]
+            assert root.find(".//Geometry/DataItem").text == f"{name}.h5:{points}"
+            for item in root.iter("DataItem"):
+                file, path = item.text.split(":")
+                assert file == name + ".h5" and result[path].shape == tuple(map(int, item.get("Dimensions").split())), item.text
+            assert {found.get("Name") for found in root.iter("Attribute")} >= {"ratio", "vertex_ratio", "quasi_conformal"}
+
+
 def check_run(program, command, mesh, vertices, cells, density, *options):
     """One run with every output, every figure checked."""
     if density is not None:
@@ -106,7 +144,9 @@ def check_run(program, command, mesh, vertices, cells, density, *options):
     check_target(command, image, cells)
     written, written_cells = read_obj(program.file("out.obj"))
     assert numpy.array_equal(written_cells, cells) and numpy.array_equal(written[:, :2], image) and not written[:, 2].any()
-    assert b"out.h5" in program.read("out.xmf")
+    check_xdmf(program, "out")
+    check_vtu(program, "out.surface.vtu", vertices, {"u": image[:, 0], "v": image[:, 1], **fields_of(program)})
+    check_vtu(program, "out.vtu", numpy.c_[image, numpy.zeros(len(image))], {"surface": vertices, **fields_of(program)})
     return image, summary
 
 

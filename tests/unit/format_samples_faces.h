@@ -74,10 +74,25 @@ static void MakeOtherGmsh(Sample *samples, int *count, int binary)
   }
 }
 
+static void MakeFreesurfer(Sample *samples, int *count)
+{
+  Sample *s = Begin(samples, count, "FreeSurfer", "white", 3);
+
+  PutBytes(s, "\377\377\376", 3, 0);
+  Put(s, "created by hand\n\n");
+  PutNumber(s, 4, 1, 5);
+  PutNumber(s, 4, 1, 4);
+  PutVertices(s, -4, 1);
+  for (int i = 0; i < 12; ++i) PutNumber(s, 4, 1, sample_triangles[i]);
+  for (int i = 0; i < 3; ++i) PutNumber(s, 4, 1, i == 0 ? 2 : i == 2 ? 20 : 0);
+  Put(s, "valid = 1  # volume info valid\nfilename = vol.mgz\n");
+}
+
 static void MakeAllFaces(Sample *samples, int *count)
 {
   MakeTextured(samples, count);
   MakeStrips(samples, count);
+  MakeFreesurfer(samples, count);
   MakeOtherGmsh(samples, count, 0);
   MakeOtherGmsh(samples, count, 1);
 }

@@ -130,11 +130,11 @@ static void TestWriters(const char *message)
   static const struct {
     const char *suffix;
     PetscBool solid, exact; /* holds tetrahedra, brings back the same bits */
-  } kind[] = {{"obj", PETSC_FALSE, PETSC_TRUE}, {"off", PETSC_FALSE, PETSC_TRUE}, {"ply", PETSC_FALSE, PETSC_TRUE},
-              {"vtu", PETSC_TRUE, PETSC_TRUE},  {"msh", PETSC_TRUE, PETSC_TRUE},  {"h5", PETSC_TRUE, PETSC_TRUE},
-              {"vtk", PETSC_TRUE, PETSC_TRUE},  {"mesh", PETSC_TRUE, PETSC_TRUE}, {"meshb", PETSC_TRUE, PETSC_TRUE},
-              {"node", PETSC_TRUE, PETSC_TRUE}, {"ele", PETSC_TRUE, PETSC_TRUE},  {"gii", PETSC_FALSE, PETSC_FALSE},
-              {"stl", PETSC_FALSE, PETSC_FALSE}};
+  } kind[] = {{"obj", PETSC_FALSE, PETSC_TRUE},    {"off", PETSC_FALSE, PETSC_TRUE}, {"ply", PETSC_FALSE, PETSC_TRUE},
+              {"vtu", PETSC_TRUE, PETSC_TRUE},     {"msh", PETSC_TRUE, PETSC_TRUE},  {"h5", PETSC_TRUE, PETSC_TRUE},
+              {"vtk", PETSC_TRUE, PETSC_TRUE},     {"mesh", PETSC_TRUE, PETSC_TRUE}, {"meshb", PETSC_TRUE, PETSC_TRUE},
+              {"node", PETSC_TRUE, PETSC_TRUE},    {"ele", PETSC_TRUE, PETSC_TRUE},  {"gii", PETSC_FALSE, PETSC_FALSE},
+              {"white", PETSC_FALSE, PETSC_FALSE}, {"stl", PETSC_FALSE, PETSC_FALSE}};
 
   for (PetscInt size = 3; size <= 4; ++size) {
     EqmSoup soup = HardSoup(size);
@@ -289,6 +289,8 @@ static const BadFile bad_files[] = {
     {"liar.tetgen", EQM_ERR_IO, "too short", "1000000000 3 0 0\n0 0 0 0\n\f"},
     {"second.tetgen", EQM_ERR_MESH, "cells have 10 vertices", "1 3 0 0\n1 0 0 0\n\f1 10 0\n1 1 1 1 1 1 1 1 1 1 1\n"},
     {"none.gii", EQM_ERR_MESH, "no triangles", "<GIFTI Version=\"1.0\"></GIFTI>"},
+    {"quads.white", EQM_ERR_IO, "mris_convert", "\377\377\375 quadrangles"},
+    {"short.white", EQM_ERR_IO, "truncated", "\377\377\376made\n\n\1\1\1\1\1\1\1\1"},
     {"fake.h5", EQM_ERR_IO, "HDF5", "\211HDF\r\n\032\n and nothing more"},
 };
 
@@ -310,6 +312,30 @@ static void TestBadFiles(char *message)
   }
   CHECK(EqmSoupRead(PETSC_COMM_WORLD, PathOf("missing.obj"), &soup) == EQM_ERR_IO, "a missing file");
   CHECK(EqmSoupRead(PETSC_COMM_WORLD, folder, &soup) == EQM_ERR_IO, "a folder instead of a file");
+}
+
+/* Entities are refused in every encoding; a document type without declarations is not. */
+static void TestEntities(char *message)
+{
+  static const char laughs[] = "<?xml version=\"1.0\" encoding=\"UTF-16\"?>\n<!DOCTYPE a [<!ENTITY b \"ha\">]>\n"
+                               "<VTKFile type=\"UnstructuredGrid\">&b;</VTKFile>\n";
+  static const char typed[] = "<?xml version=\"1.0\"?>\n<!DOCTYPE GIFTI SYSTEM \"http://www.nitrc.org/gifti.dtd\">\n"
+                              "<GIFTI Version=\"1.0\"></GIFTI>\n";
+  char wide[2 * sizeof(laughs)] = "\377\376";
+  EqmSoup soup = NULL;
+  PetscErrorCode code;
+
+  for (size_t i = 0; i + 1 < sizeof(laughs); ++i) {
+    wide[2 + 2 * i] = laughs[i];
+    wide[3 + 2 * i] = '\0';
+  }
+  WriteBytes(PathOf("wide.vtu"), wide, 2 * sizeof(laughs));
+  message[0] = '\0';
+  code = EqmSoupRead(PETSC_COMM_WORLD, PathOf("wide.vtu"), &soup);
+  CHECK(code == EQM_ERR_IO && strstr(message, "entities") && !soup, "wide.vtu: code %d, %s", (int)code, message);
+  WriteBytes(PathOf("typed.gii"), typed, sizeof(typed) - 1);
+  code = EqmSoupRead(PETSC_COMM_WORLD, PathOf("typed.gii"), &soup);
+  CHECK(code == EQM_ERR_MESH && strstr(message, "no triangles"), "typed.gii: code %d, %s", (int)code, message);
 }
 
 /* Not a number is for the diagnosis to report, not for the reader. */
@@ -487,6 +513,7 @@ int main(int argc, char **argv)
   TestWriters(message);
   TestFields();
   TestBadFiles(message);
+  TestEntities(message);
   TestNotFinite(message);
   TestNumbers();
   TestChecksum();
