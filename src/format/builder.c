@@ -20,6 +20,7 @@ static PetscErrorCode Grow(EqmInput *in, size_t row_bytes, size_t count, size_t 
     return EqmReject(in, EQM_ERR_IO, "the mesh has more than %lld vertices or cells: build with 64-bit indices",
                      (long long)PETSC_MAX_INT);
   }
+  wanted = PetscMax(wanted, 1); /* an array, though an empty one */
   if (wanted <= *capacity) return 0;
   if (count) wanted = PetscMax(wanted, count + count / 2);
   EqmTry(PetscRealloc(wanted * row_bytes, (void **)array));

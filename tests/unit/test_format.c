@@ -236,6 +236,9 @@ static const BadFile bad_files[] = {
     {"points.ply", EQM_ERR_MESH, "no triangles",
      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 "
      "0\n"},
+    {"nothing.ply", EQM_ERR_MESH, "no triangles",
+     "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement face 0\n"
+     "property list uchar int vertex_indices\nend_header\n"},
     {"truncated.stl", EQM_ERR_IO, "truncated", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"},
     {"none.stl", EQM_ERR_MESH, "no triangles", "solid a\nendsolid a\n"},
     {"garbage.stl", EQM_ERR_IO, "truncated", "this is no solid"},
