@@ -73,15 +73,19 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map);
 /* EqmMapDestroy - free a map and set it to NULL; nothing happens if it is NULL. Collective. */
 PETSC_EXTERN PetscErrorCode EqmMapDestroy(EqmMap *map);
-/* EqmMapOntoInput - bring the map of a repaired mesh back onto the input that EqmSoupRepair made it of.
+/* EqmMapOntoInput - bring the map of a repaired or prepared mesh back onto the input that it was made of.
 
-   Collective. parent - per cell of the repaired soup's slab, the input cell it comes from; cell_weight - per cell of
-   that slab, its weight w, in any unit; map - the new map, of `input`. The input's vertices kept their numbers: their
-   images and vertex ratios are copied. An input cell gets the weighted mean of the ratios of its children, 1 if it was
-   removed. Vertices that no cell uses stay at zero. Distortion, history and cost are those of the repaired map.
-   `repaired` and `parent` are referenced, are written into a result file, and must outlive `map`. */
+   Collective. parent - per cell of the repaired soup's slab, the input cell it comes from, -1 for an added one; vertex
+   - per vertex of the input's slab, the vertex of the repaired soup that stands for it, NULL: that of the same number;
+   cell_weight - per cell of the repaired slab, its weight w, in any unit; map - the new map, of `input`. The input's
+   vertices get the images and vertex ratios of those that stand for them, an input cell the weighted mean of the ratios
+   of its children, 1 if it has none. Vertices that no cell uses stay at zero. Distortion, history and cost are those of
+   the repaired map. `repaired` and `parent` are referenced, are written into a result file, and must outlive `map`. */
 PETSC_EXTERN PetscErrorCode EqmMapOntoInput(EqmMap repaired, EqmSoup input, const PetscInt *parent,
-                                            const PetscReal *cell_weight, EqmMap *map);
+                                            const PetscInt *vertex, const PetscReal *cell_weight, EqmMap *map);
+/* EqmMapAddPrepared - note a step of the preparation that changed the input: `count` things, and `what` in words, for
+   the summary's list `prepared` and the result file's attribute of that name. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmMapAddPrepared(EqmMap map, const char *step, PetscInt64 count, const char *what);
 /* EqmMapRead - read the map of the mesh `soup` from a file: a result (.h5, /map/coordinates), a mesh of any format whose
    vertices are the images (or, if they repeat the mesh, its texture coordinates), a CSV or NPY file with two or three
    coordinates per vertex; with one z everywhere it is a planar map. Ratios and distortion stay zero until

@@ -1,8 +1,12 @@
 /* equimap convert IN OUT: from one mesh format to another, mended, refined or peeled on the way. */
 #include "app.h"
+#include "mesh/target.h"
+#include "prepare/prepare.h"
 
 typedef struct {
-  PetscBool repair, boundary;
+  PetscBool repair, boundary, has_target;
+  EqmPrepareOptions prepare;
+  char target[32];
   PetscInt refine;
 } ConvertOptions;
 
@@ -11,12 +15,16 @@ static PetscErrorCode ReadOptions(ConvertOptions *options)
   PetscFunctionBegin;
   options->repair = options->boundary = PETSC_FALSE;
   options->refine = 0;
+  EqmPrepareOptionsInit(&options->prepare);
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Conversion of meshes (convert)", "convert");
   PetscCall(
       PetscOptionsBool("-repair",
                        "mend what is safe to mend (twins, repeated vertices, orientation, cells without an interior "
                        "vertex); kept vertices keep their numbers",
                        "convert", options->repair, &options->repair, NULL));
+  PetscCall(EqmPrepareSetFromOptions(PetscOptionsObject, &options->prepare));
+  PetscCall(PetscOptionsString("-target", "of -prepare: the command that the mesh is for; without it any that takes it",
+                               "convert", "", options->target, sizeof(options->target), &options->has_target));
   PetscCall(PetscOptionsInt("-refine", "split every triangle into 4, every tetrahedron into 8, so many times",
                             "convert", options->refine, &options->refine, NULL));
   PetscCall(PetscOptionsBool("-boundary",
@@ -24,6 +32,27 @@ static PetscErrorCode ReadOptions(ConvertOptions *options)
                              "look outward",
                              "convert", options->boundary, &options->boundary, NULL));
   PetscOptionsEnd();
+  if (options->has_target && !EqmTargetFind(options->target))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-target %s: there is no such map command", options->target);
+  options->prepare.target = options->has_target ? options->target : NULL;
+  options->prepare.repair = options->repair;
+  PetscFunctionReturn(0);
+}
+
+/* The prepared and repaired mesh takes the place of the one that was read. Collective. */
+static PetscErrorCode Prepare(const EqmPrepareOptions *options, EqmSoup *soup)
+{
+  EqmPreparation preparation;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupPrepare(*soup, options, &preparation));
+  for (PetscInt s = 0; s < preparation.num_steps; s++) {
+    PetscCall(PetscPrintf((*soup)->comm, "prepared: %s: %s\n", preparation.step[s].step, preparation.step[s].what));
+  }
+  PetscCall(EqmSoupDestroy(soup));
+  *soup = preparation.soup;
+  preparation.soup = NULL;
+  PetscCall(EqmPreparationReset(&preparation));
   PetscFunctionReturn(0);
 }
 
@@ -58,7 +87,7 @@ static PetscErrorCode PrintUsage(void)
   PetscFunctionBegin;
   PetscCall(PetscPrintf(
       PETSC_COMM_WORLD,
-      "\nusage: equimap convert IN OUT [-repair] [-refine TIMES] [-boundary]\n"
+      "\nusage: equimap convert IN OUT [-prepare LIST] [-repair] [-refine TIMES] [-boundary]\n"
       "The suffix of OUT chooses its format; IN's is seen from its content. Vertices keep their numbers; new ones\n"
       "come after them.\n"));
   PetscFunctionReturn(0);
@@ -86,13 +115,7 @@ PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-refine %" PetscInt_FMT ": give 0 or more", options.refine);
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
   if (soup->note[0]) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "note: %s: %s\n", soup->file, soup->note));
-  if (options.repair) {
-    EqmRepair repair;
-    PetscInt *parent;
-
-    PetscCall(EqmSoupRepair(&soup, &repair, &parent));
-    PetscCall(PetscFree(parent));
-  }
+  PetscCall(Prepare(&options.prepare, &soup));
   if (options.refine) PetscCall(EqmSoupRefine(&soup, options.refine));
   if (options.boundary) PetscCall(TakeBoundary(&soup));
   PetscCall(EqmSoupWrite(soup, line->argument[1]));

@@ -20,6 +20,7 @@ typedef struct {
 static PetscErrorCode AskOptions(MapOptions *options)
 {
   PetscFunctionBegin;
+  EqmPrepareOptionsInit(&options->input.prepare);
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
   PetscCall(PetscOptionsString("-o",
                                "where the map goes: .h5 (everything, with an .xmf for ParaView), .obj .off .ply .vtu "
@@ -37,6 +38,7 @@ static PetscErrorCode AskOptions(MapOptions *options)
       NULL, "", options->density, sizeof(options->density), &options->has_density));
   PetscCall(PetscOptionsBool("-repair", "mend first what is safe to mend (see equimap check)", NULL,
                              options->input.repair, &options->input.repair, NULL));
+  PetscCall(EqmPrepareSetFromOptions(PetscOptionsObject, &options->input.prepare));
   PetscCall(PetscOptionsReal("-noise",
                              "move every vertex of the surface along its normal by a random length of this standard "
                              "deviation, in the mesh's units: for studies of stability",

@@ -1,5 +1,6 @@
-/* The mesh that a run is given: read, mended if asked, refused if it cannot be mapped. */
+/* The mesh that a run is given: read, prepared and repaired if asked, refused if it cannot be mapped. */
 #include "intake/intake.h"
+#include "base/rows.h"
 #include "mesh/target.h"
 #include "store/keptmesh.h"
 #include "store/map_private.h"
@@ -35,20 +36,41 @@ PetscErrorCode EqmPrintRepair(MPI_Comm comm, const char *part, const EqmRepair *
   PetscFunctionReturn(0);
 }
 
-/* Mend a copy of the input; where there was nothing to mend, the input is what is mapped. */
-static PetscErrorCode Mend(EqmIntake *intake)
+/* The steps of a preparation, a line each. Collective. */
+PetscErrorCode EqmPrintPreparation(MPI_Comm comm, const char *part, const EqmPreparation *preparation)
 {
-  EqmRepair *const r = &intake->repair;
-
   PetscFunctionBegin;
-  PetscCall(EqmSoupCopy(intake->given, &intake->mapped));
-  PetscCall(EqmSoupRepair(&intake->mapped, r, &intake->parent));
-  if (r->duplicate_cells_removed + r->degenerate_cells_removed + r->cells_flipped + r->cells_split) {
-    PetscFunctionReturn(0);
+  for (PetscInt s = 0; s < preparation->num_steps; s++) {
+    const EqmPreparedStep *const step = &preparation->step[s];
+
+    if (!strcmp(step->step, "repair")) continue; /* has a line of its own, also where it changed nothing */
+    PetscCall(PetscPrintf(comm, "%s%sprepared: %s: %s\n", OF_PART(part), step->step, step->what));
   }
-  PetscCall(EqmSoupDestroy(&intake->mapped));
-  PetscCall(PetscFree(intake->parent));
+  PetscFunctionReturn(0);
+}
+
+/* Prepare a copy of the input; where there was nothing to do, the input is what is mapped. */
+static PetscErrorCode Prepare(const EqmPrepareOptions *options, EqmIntake *intake)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSoupPrepare(intake->given, options, &intake->preparation));
+  intake->repair = intake->preparation.repair;
+  if (intake->preparation.is_changed) {
+    intake->mapped = intake->preparation.soup;
+    intake->parent = intake->preparation.parent;
+  } else {
+    PetscCall(EqmPreparationReset(&intake->preparation));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Forget it. */
+static PetscErrorCode Unprepare(EqmIntake *intake)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmPreparationReset(&intake->preparation));
   intake->mapped = intake->given;
+  intake->parent = NULL;
   PetscFunctionReturn(0);
 }
 
@@ -68,34 +90,48 @@ static PetscErrorCode Diagnose(const char *wanted, EqmIntake *intake, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* Would the mesh be taken with -repair? */
-static PetscErrorCode CouldBeMended(EqmIntake *intake, const char *wanted, PetscBool *could)
+/* Would the mesh be taken with -repair, or else with -prepare auto? `advice` is the option; empty: with neither. */
+static PetscErrorCode FindCure(EqmIntake *intake, const char *wanted, PetscBool can_prepare, char *advice,
+                               size_t length)
 {
+  static const char *const cures[] = {"-repair", "-prepare auto", "-prepare auto -repair"};
   char text[4 * EQM_MESSAGE_MAX];
   PetscBool fatal = PETSC_TRUE;
 
   PetscFunctionBegin;
-  PetscCall(Mend(intake));
-  if (intake->mapped != intake->given) PetscCall(Diagnose(wanted, intake, &fatal, text, sizeof(text)));
-  *could = (PetscBool)!fatal;
+  advice[0] = '\0';
+  for (int cure = 0; cure < (can_prepare ? 3 : 1) && fatal; cure++) {
+    EqmPrepareOptions options;
+
+    EqmPrepareOptionsInit(&options);
+    options.target = wanted;
+    options.repair = (PetscBool)(cure != 1);
+    PetscCall(PetscStrncpy(options.steps, cure ? "auto" : "none", sizeof(options.steps)));
+    PetscCall(Unprepare(intake));
+    PetscCall(Prepare(&options, intake));
+    if (intake->mapped != intake->given) PetscCall(Diagnose(wanted, intake, &fatal, text, sizeof(text)));
+    PetscCall(PetscStrncpy(advice, cures[cure], length));
+  }
+  if (fatal) advice[0] = '\0';
   PetscFunctionReturn(0);
 }
 
-/* The mesh is out of the question: say why, and whether -repair helps, would help or did not help. */
+/* The mesh is out of the question: say why, and whether something helps, or did not help. */
 static PetscErrorCode Refuse(EqmIntake *intake, const EqmIntakeOptions *options, const char *findings)
 {
   const char *const mesh = intake->given->file, *const target = intake->target;
-  const char *const mended = options->repair ? ", not even after -repair" : "";
-  PetscBool could = PETSC_FALSE;
-  char hope[2 * PETSC_MAX_PATH_LEN] = "";
+  const PetscBool prepared = (PetscBool)(intake->mapped != intake->given && intake->preparation.num_steps);
+  const char *const tried = options->repair ? ", not even after -repair" : prepared ? ", not even prepared" : "";
+  char hope[2 * PETSC_MAX_PATH_LEN] = "", cure[64] = "";
 
   PetscFunctionBegin;
-  if (!options->repair) PetscCall(CouldBeMended(intake, options->target, &could));
-  if (could) PetscCall(PetscSNPrintf(hope, sizeof(hope), "\nThis can be mended: %s -repair -o OUT", options->usage));
+  if (!options->repair && !prepared)
+    PetscCall(FindCure(intake, options->target, (PetscBool)(options->prepare.steps[0] != 0), cure, sizeof(cure)));
+  if (cure[0]) PetscCall(PetscSNPrintf(hope, sizeof(hope), "\nThis can be mended: %s %s -o OUT", options->usage, cure));
   if (target)
-    EqmFail(intake->given->comm, EQM_ERR_MESH, "%s cannot be mapped to the %s%s:\n%s%s", mesh, target, mended, findings,
+    EqmFail(intake->given->comm, EQM_ERR_MESH, "%s cannot be mapped to the %s%s:\n%s%s", mesh, target, tried, findings,
             hope);
-  EqmFail(intake->given->comm, EQM_ERR_MESH, "%s is neither disk, sphere nor ball%s:\n%s%s", mesh, mended, findings,
+  EqmFail(intake->given->comm, EQM_ERR_MESH, "%s is neither disk, sphere nor ball%s:\n%s%s", mesh, tried, findings,
           hope);
 }
 
@@ -137,6 +173,7 @@ static PetscErrorCode Keep(EqmSoup soup, const EqmIntakeOptions *options, EqmLed
 PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger, EqmIntake *intake)
 {
   char text[4 * EQM_MESSAGE_MAX];
+  EqmPrepareOptions prepare = options->prepare;
   EqmSoup plain;
   PetscBool fatal;
 
@@ -148,7 +185,10 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DIAGNOSE));
   intake->mapped = intake->given;
   if (!options->quiet && plain->note[0]) PetscCall(PetscPrintf(comm, "note: %s: %s\n", plain->file, plain->note));
-  if (options->repair) PetscCall(Mend(intake));
+  prepare.repair = options->repair;
+  prepare.target = options->target;
+  PetscCall(Prepare(&prepare, intake));
+  if (!options->quiet) PetscCall(EqmPrintPreparation(comm, options->part, &intake->preparation));
   if (options->repair && !options->quiet) PetscCall(EqmPrintRepair(comm, options->part, &intake->repair));
   PetscCall(Diagnose(options->target, intake, &fatal, text, sizeof(text)));
   if (fatal) PetscCall(Refuse(intake, options, text));
@@ -159,6 +199,32 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   PetscFunctionReturn(0);
 }
 
+/* Add to the result which cells of the input have been mapped: 1, and which left out: 0. */
+static PetscErrorCode MarkLeftOut(const EqmIntake *intake, EqmMap map)
+{
+  const EqmSoup given = intake->given;
+  const PetscInt count = given->cell_end - given->cell_start,
+                 num = intake->mapped->cell_end - intake->mapped->cell_start;
+  PetscInt num_children = 0, *child, *one, *mark;
+  PetscInt64 *mapped;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(num, &child, num, &one));
+  PetscCall(PetscMalloc1(count + 1, &mapped));
+  PetscCall(PetscCalloc1(count, &mark));
+  for (PetscInt c = 0; c < num; c++) {
+    if (intake->parent[c] < 0) continue;
+    one[num_children] = 1;
+    child[num_children++] = intake->parent[c];
+  }
+  PetscCall(EqmPutRows(given->comm, count, num_children, child, MPIU_INT, 1, one, mark));
+  for (PetscInt c = 0; c < count; c++) mapped[c] = mark[c];
+  PetscCall(EqmMapAddIntegers(map, "/cell/mapped", given->num_cells, given->cell_start, count, 0, mapped));
+  PetscCall(PetscFree2(child, one));
+  PetscCall(PetscFree(mark));
+  PetscFunctionReturn(0);
+}
+
 /* EqmIntakeTakeMap - the map of the mesh that was mapped becomes one of the mesh that was given; the two are the same
    where nothing was mended.
 
@@ -166,6 +232,7 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
    before `found`. */
 PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap found, EqmMap *map)
 {
+  const EqmPreparation *const preparation = &intake->preparation;
   PetscReal *weight;
 
   PetscFunctionBegin;
@@ -173,7 +240,12 @@ PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap fo
   if (intake->mapped == intake->given) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(intake->mapped->cell_end - intake->mapped->cell_start, &weight));
   PetscCall(EqmMeshCellsToInput(mesh, intake->mapped, 1, mesh->weight, weight));
-  PetscCall(EqmMapOntoInput(found, intake->given, intake->parent, weight, map));
+  PetscCall(EqmMapOntoInput(found, intake->given, intake->parent, preparation->vertex, weight, map));
+  for (PetscInt s = 0; s < preparation->num_steps; s++) {
+    const EqmPreparedStep *const step = &preparation->step[s];
+    PetscCall(EqmMapAddPrepared(*map, step->step, step->count, step->what));
+  }
+  PetscCall(MarkLeftOut(intake, *map));
   (*map)->repair = intake->repair;
   PetscCall(PetscFree(weight));
   PetscFunctionReturn(0);
@@ -183,9 +255,9 @@ PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap fo
 PetscErrorCode EqmIntakeDestroy(EqmIntake *intake)
 {
   PetscFunctionBegin;
-  if (intake->mapped != intake->given) PetscCall(EqmSoupDestroy(&intake->mapped));
+  PetscCall(EqmPreparationReset(&intake->preparation));
   PetscCall(EqmSoupDestroy(&intake->given));
-  PetscCall(PetscFree(intake->parent));
   intake->mapped = NULL;
+  intake->parent = NULL;
   PetscFunctionReturn(0);
 }

@@ -1,10 +1,11 @@
-/* The mesh that a run is given: which file, read, mended if asked, refused if it cannot be mapped, kept beside the
-   checkpoint. */
+/* The mesh that a run is given: which file, read, prepared and repaired if asked, refused if it cannot be mapped, kept
+   beside the checkpoint. */
 #ifndef EQM_INTAKE_H
 #define EQM_INTAKE_H
 
 #include <equimap/map.h>
 #include <equimap/mesh.h>
+#include "prepare/prepare.h"
 
 /* How a run reads a mesh. */
 typedef struct {
@@ -19,19 +20,21 @@ typedef struct {
   const char *density;           /* a file with a weight per cell, or NULL */
   PetscReal noise;               /* that vertices move along their normals; 0: none */
   PetscInt seed;                 /* of the noise */
-  PetscBool repair;              /* mend what is safe to mend */
-  PetscBool quiet;               /* print neither what was mended nor warnings */
+  EqmPrepareOptions prepare;     /* what is done to the mesh first; with empty steps the run cannot prepare */
+  PetscBool repair;              /* repair what can be repaired without a choice */
+  PetscBool quiet;               /* print neither what was done nor warnings */
 } EqmIntakeOptions;
 
 /* The mesh that a run works on. */
 typedef struct {
-  EqmSoup given;  /* as the file has it, with noise if asked */
-  EqmSoup mapped; /* mended, or `given` itself where nothing was mended */
-  PetscInt
-      *parent; /* per cell of the slab of `mapped` the cell of `given` it comes from; NULL where they are the same */
-  EqmRepair repair;     /* what was mended */
-  EqmTopology topology; /* of `mapped` */
-  const char *target;   /* what it can be mapped to */
+  EqmSoup given;    /* as the file has it, with noise if asked */
+  EqmSoup mapped;   /* prepared and repaired, or `given` itself where nothing was changed */
+  PetscInt *parent; /* per cell of the slab of `mapped` the cell of `given` it comes from, -1: it was added; NULL where
+                       they are the same */
+  EqmRepair repair; /* what was repaired */
+  EqmPreparation preparation; /* what was done: steps, and the way back */
+  EqmTopology topology;       /* of `mapped` */
+  const char *target;         /* what it can be mapped to */
 } EqmIntake;
 
 /* ---- choose.c */
@@ -43,5 +46,6 @@ PETSC_INTERN PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions 
 PETSC_INTERN PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap found, EqmMap *map);
 PETSC_INTERN PetscErrorCode EqmIntakeDestroy(EqmIntake *intake);
 PETSC_INTERN PetscErrorCode EqmPrintRepair(MPI_Comm comm, const char *part, const EqmRepair *repair);
+PETSC_INTERN PetscErrorCode EqmPrintPreparation(MPI_Comm comm, const char *part, const EqmPreparation *preparation);
 
 #endif

@@ -50,8 +50,7 @@ static PetscErrorCode VoteOnTurning(EqmSoup soup, const EqmVicinity *vicinity, c
   PetscFunctionReturn(0);
 }
 
-/* Decide which cells to turn over. */
-static PetscErrorCode ChooseTurns(EqmSoup soup, const EqmVicinity *vicinity, PetscBool *turn)
+PetscErrorCode EqmVicinityChooseTurns(EqmSoup soup, const EqmVicinity *vicinity, PetscBool *turn)
 {
   PetscInt *label;
   PetscBool *conflict;
@@ -204,9 +203,7 @@ static PetscErrorCode AddCells(const EqmVicinity *vicinity, const EqmVertexGroup
   PetscFunctionReturn(0);
 }
 
-/* Cells that the vicinity leaves out: those that repeat a vertex go; those that name a missing one stay, for nobody can
-   know what they should be, with that vertex as -1, which no added vertex will turn into a good one. */
-static PetscErrorCode SortOutUnusable(EqmSoup soup, EqmRepair *repair, EqmCellList *list)
+PetscErrorCode EqmCellListAddUnusable(EqmSoup soup, EqmCellList *list, PetscInt64 *repeated)
 {
   const PetscInt cs = soup->cell_size;
 
@@ -216,7 +213,7 @@ static PetscErrorCode SortOutUnusable(EqmSoup soup, EqmRepair *repair, EqmCellLi
     const EqmCellUse use = EqmSoupCellUse(soup, cell);
     PetscInt vertex[4];
 
-    if (use == EQM_CELL_REPEATED_VERTEX) repair->degenerate_cells_removed++;
+    if (use == EQM_CELL_REPEATED_VERTEX) ++*repeated;
     if (use != EQM_CELL_BAD_INDEX) continue;
     for (PetscInt a = 0; a < cs; a++) vertex[a] = cell[a] >= 0 && cell[a] < soup->num_vertices ? cell[a] : -1;
     PetscCall(EqmCellListAdd(list, c, vertex));
@@ -224,7 +221,7 @@ static PetscErrorCode SortOutUnusable(EqmSoup soup, EqmRepair *repair, EqmCellLi
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DropDuplicates(EqmVicinity *vicinity, EqmRepair *repair)
+PetscErrorCode EqmVicinityRemoveDuplicates(EqmVicinity *vicinity, PetscInt64 *removed)
 {
   PetscInt *first;
 
@@ -232,14 +229,10 @@ static PetscErrorCode DropDuplicates(EqmVicinity *vicinity, EqmRepair *repair)
   PetscCall(PetscMalloc1(vicinity->num_cells, &first));
   PetscCall(EqmVicinityFindDuplicates(vicinity, first));
   for (PetscInt c = 0; c < vicinity->num_cells; c++) {
-    if (first[c] == c || EqmVicinityCellOwnerVertex(vicinity, c) >= vicinity->num_owned) continue;
-    repair->duplicate_cells_removed++;
+    *removed += first[c] != c && EqmVicinityCellOwnerVertex(vicinity, c) < vicinity->num_owned;
   }
   PetscCall(EqmVicinityDropDuplicates(vicinity, first));
   PetscCall(PetscFree(first));
-  for (PetscInt v = 0; v < vicinity->num_owned; v++) {
-    if (vicinity->star_start[v] == vicinity->star_start[v + 1]) repair->vertices_unreferenced++;
-  }
   PetscFunctionReturn(0);
 }
 
@@ -253,7 +246,7 @@ static PetscErrorCode MendCells(EqmSoup soup, const EqmVicinity *vicinity, EqmVe
   PetscFunctionBegin;
   PetscCall(PetscMalloc4(EqmCellNumEdges(vicinity->cell_size) * vicinity->num_cells, &edge_vertex, vicinity->num_cells,
                          &center, vicinity->num_cells, &turn, vicinity->num_local, &on_boundary));
-  PetscCall(ChooseTurns(soup, vicinity, turn));
+  PetscCall(EqmVicinityChooseTurns(soup, vicinity, turn));
   PetscCall(EqmVicinityMarkBoundary(vicinity, on_boundary));
   PetscCall(EqmEdgesNumber(vicinity, on_boundary, &groups[1], edge_vertex));
   PetscCall(NumberCenters(vicinity, on_boundary, edge_vertex, &groups[2], center));
@@ -272,8 +265,11 @@ PetscErrorCode EqmSoupRepair(EqmSoup *soup, EqmRepair *repair, PetscInt **parent
   PetscFunctionBegin;
   PetscCall(PetscMemzero(repair, sizeof(*repair)));
   PetscCall(EqmVicinityCreate(*soup, &vicinity));
-  PetscCall(SortOutUnusable(*soup, repair, &list));
-  PetscCall(DropDuplicates(&vicinity, repair));
+  PetscCall(EqmCellListAddUnusable(*soup, &list, &repair->degenerate_cells_removed));
+  PetscCall(EqmVicinityRemoveDuplicates(&vicinity, &repair->duplicate_cells_removed));
+  for (PetscInt v = 0; v < vicinity.num_owned; v++) {
+    repair->vertices_unreferenced += vicinity.star_start[v] == vicinity.star_start[v + 1];
+  }
   PetscCall(EqmVertexGroupPlace((*soup)->comm, &groups[0]));
   PetscCall(MendCells(*soup, &vicinity, groups, repair, &list));
   PetscCall(EqmVicinityReset(&vicinity));

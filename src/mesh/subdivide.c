@@ -228,7 +228,14 @@ static PetscErrorCode DealVertices(MPI_Comm comm, PetscInt num_groups, const Eqm
   PetscFunctionReturn(0);
 }
 
-/* Bring the new cells to the ranks that held their parents, in the order of the parents. */
+/* The place of a parent in the slab; behind it for none. */
+static PetscInt PlaceOfParent(EqmSoup soup, PetscInt parent)
+{
+  return parent < 0 ? soup->cell_end - soup->cell_start : parent - soup->cell_start;
+}
+
+/* Bring the new cells to the ranks that held their parents, in the order of the parents; those without a parent, in the
+   order of the ranks that made them, to the end. */
 static PetscErrorCode DealCells(EqmSoup soup, EqmCellList *list, PetscInt *num_cells, PetscInt **cells,
                                 PetscInt **parent)
 {
@@ -241,19 +248,21 @@ static PetscErrorCode DealCells(EqmSoup soup, EqmCellList *list, PetscInt *num_c
   PetscCall(PetscLayoutCreateFromSizes(soup->comm, num_parents, soup->num_cells, 1, &layout));
   PetscCall(PetscMalloc1(list->count, &destination));
   for (PetscInt k = 0; k < list->count; k++) {
-    PetscCall(PetscLayoutFindOwner(layout, list->records[width * k], &destination[k]));
+    destination[k] = layout->size - 1;
+    if (list->records[width * k] >= 0)
+      PetscCall(PetscLayoutFindOwner(layout, list->records[width * k], &destination[k]));
   }
   PetscCall(PetscLayoutDestroy(&layout));
   PetscCall(EqmExchange(soup->comm, list->count, width, destination, list->records, num_cells, &received));
   PetscCall(PetscFree(destination));
   PetscCall(PetscFree(list->records));
-  PetscCall(PetscCalloc1(num_parents + 1, &start));
-  for (PetscInt k = 0; k < *num_cells; k++) start[received[width * k] - soup->cell_start + 1]++;
-  for (PetscInt p = 0; p < num_parents; p++) start[p + 1] += start[p];
+  PetscCall(PetscCalloc1(num_parents + 2, &start));
+  for (PetscInt k = 0; k < *num_cells; k++) start[PlaceOfParent(soup, received[width * k]) + 1]++;
+  for (PetscInt p = 0; p <= num_parents; p++) start[p + 1] += start[p];
   PetscCall(PetscMalloc1(cs * *num_cells, cells));
   PetscCall(PetscMalloc1(*num_cells, parent));
   for (PetscInt k = 0; k < *num_cells; k++) {
-    const PetscInt place = start[received[width * k] - soup->cell_start]++;
+    const PetscInt place = start[PlaceOfParent(soup, received[width * k])]++;
 
     (*parent)[place] = received[width * k];
     for (PetscInt a = 0; a < cs; a++) (*cells)[cs * place + a] = received[width * k + 1 + a];
@@ -264,8 +273,8 @@ static PetscErrorCode DealCells(EqmSoup soup, EqmCellList *list, PetscInt *num_c
 }
 
 /* Replace a soup by one with the vertices of the groups (the old ones are group 0) and the cells of the list, which is
-   used up; children stand where their parents stood and inherit their density. `parent` (PetscFree it) has the old
-   input number per cell of the new slab. Collective. */
+   used up; children stand where their parents stood and inherit their density; cells without a parent (-1) come last
+   and have the density 1. `parent` (PetscFree it) has the old input number per cell of the new slab. Collective. */
 PetscErrorCode EqmSoupAssemble(EqmSoup *soup, PetscInt num_groups, const EqmVertexGroup *groups, EqmCellList *list,
                                PetscInt **parent)
 {
@@ -278,7 +287,9 @@ PetscErrorCode EqmSoupAssemble(EqmSoup *soup, PetscInt num_groups, const EqmVert
   PetscCall(DealCells(*soup, list, &num_cells, &cells, parent));
   if ((*soup)->density) {
     PetscCall(PetscMalloc1(num_cells + 1, &density)); /* never NULL: that would say that there is none */
-    for (PetscInt c = 0; c < num_cells; c++) density[c] = (*soup)->density[(*parent)[c] - (*soup)->cell_start];
+    for (PetscInt c = 0; c < num_cells; c++) {
+      density[c] = (*parent)[c] < 0 ? 1. : (*soup)->density[PlaceOfParent(*soup, (*parent)[c])];
+    }
   }
   PetscCall(EqmSoupCreateFromSlabs((*soup)->comm, (*soup)->cell_size, num_vertices, vertices, num_cells, cells,
                                    (*soup)->file, &made));

@@ -36,6 +36,19 @@ PetscErrorCode EqmMapAddIntegers(EqmMap map, const char *path, PetscInt total, P
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmMapAddPrepared(EqmMap map, const char *step, PetscInt64 count, const char *what)
+{
+  EqmPreparedFigure *prepared;
+
+  PetscFunctionBegin;
+  PetscCall(PetscRealloc(sizeof(EqmPreparedFigure) * (size_t)(map->num_prepared + 1), &map->prepared));
+  prepared = &map->prepared[map->num_prepared++];
+  prepared->count = count;
+  PetscCall(PetscStrncpy(prepared->step, step, sizeof(prepared->step)));
+  PetscCall(PetscStrncpy(prepared->what, what, sizeof(prepared->what)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode AddFigure(EqmMap map, const char *key, EqmFigureKind kind, EqmMapFigure **figure)
 {
   PetscFunctionBegin;
@@ -87,5 +100,6 @@ PetscErrorCode EqmMapResetExtras(EqmMap map)
   PetscCall(PetscFree(map->arrays));
   PetscCall(PetscFree(map->figures));
   map->num_arrays = map->num_figures = 0;
+  PetscCall(PetscFree(map->prepared));
   PetscFunctionReturn(0);
 }

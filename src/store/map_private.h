@@ -25,6 +25,12 @@ typedef struct {
   char text[PETSC_MAX_PATH_LEN];
 } EqmMapFigure;
 
+/* A step of the preparation that changed the input. */
+typedef struct {
+  char step[32], what[192];
+  PetscInt64 count;
+} EqmPreparedFigure;
+
 struct _p_EqmMap {
   EqmSoup soup;                /* the input mesh; referenced, not owned */
   PetscInt dim;                /* coordinates per vertex: 2 or 3 */
@@ -51,6 +57,8 @@ struct _p_EqmMap {
   EqmMap repaired;        /* where the input was repaired first: the map of the repaired mesh; referenced, not owned */
   const PetscInt *parent; /* with `repaired`: per cell of its soup's slab the input cell it comes from; referenced */
   EqmRepair repair;       /* with `repaired`: what was done */
+  PetscInt num_prepared;  /* what was done to the input before that */
+  EqmPreparedFigure *prepared;
   PetscInt num_arrays, num_figures; /* what a program adds to the result */
   EqmMapArray *arrays;
   EqmMapFigure *figures;

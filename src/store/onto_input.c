@@ -3,15 +3,18 @@
 #include "base/rows.h"
 
 /* Copy `width` reals per vertex from the slabs of the repaired soup to those of the input, whose vertices kept their
-   numbers. Collective. */
-static PetscErrorCode FetchVertices(EqmSoup repaired, EqmSoup input, PetscInt width, const PetscReal *from,
-                                    PetscReal *to)
+   numbers or have another one in `vertex`. Collective. */
+static PetscErrorCode FetchVertices(EqmSoup repaired, EqmSoup input, const PetscInt *vertex, PetscInt width,
+                                    const PetscReal *from, PetscReal *to)
 {
+  const PetscInt num_slab = repaired->vertex_end - repaired->vertex_start;
   const PetscInt count = input->vertex_end - input->vertex_start;
 
   PetscFunctionBegin;
-  PetscCall(EqmFetchSlab(repaired->comm, repaired->vertex_end - repaired->vertex_start, count, input->vertex_start,
-                         MPIU_REAL, width, from, to));
+  if (vertex)
+    PetscCall(EqmFetchRows(repaired->comm, num_slab, count, vertex, MPIU_REAL, width, from, to));
+  else
+    PetscCall(EqmFetchSlab(repaired->comm, num_slab, count, input->vertex_start, MPIU_REAL, width, from, to));
   PetscFunctionReturn(0);
 }
 
@@ -21,25 +24,27 @@ static PetscErrorCode GatherMeans(EqmMap repaired, const PetscInt *parent, const
 {
   const PetscInt num_children = repaired->soup->cell_end - repaired->soup->cell_start;
   const PetscInt num_cells = map->soup->cell_end - map->soup->cell_start;
-  PetscReal *product, *value_sum, *weight_sum;
-  PetscLayout layout;
+  PetscInt num_leaves = 0, *input_cell;
+  PetscReal *product, *share, *value_sum, *weight_sum;
   PetscSF sf;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(num_children, &product));
+  PetscCall(PetscMalloc3(num_children, &input_cell, num_children, &product, num_children, &share));
   PetscCall(PetscCalloc2(num_cells, &value_sum, num_cells, &weight_sum));
-  for (PetscInt c = 0; c < num_children; c++) product[c] = weight[c] * value[c];
-  PetscCall(PetscLayoutCreateFromSizes(map->soup->comm, num_cells, map->soup->num_cells, 1, &layout));
-  PetscCall(PetscSFCreate(map->soup->comm, &sf));
-  PetscCall(PetscSFSetGraphLayout(sf, layout, num_children, NULL, PETSC_COPY_VALUES, parent));
+  for (PetscInt c = 0; c < num_children; c++) {
+    if (parent[c] < 0) continue;
+    input_cell[num_leaves] = parent[c];
+    product[num_leaves] = weight[c] * value[c];
+    share[num_leaves++] = weight[c];
+  }
+  PetscCall(EqmRowsCreateSF(map->soup->comm, num_cells, num_leaves, input_cell, &sf));
   PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, product, value_sum, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, product, value_sum, MPIU_SUM));
-  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, weight, weight_sum, MPIU_SUM));
-  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, weight, weight_sum, MPIU_SUM));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, share, weight_sum, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, share, weight_sum, MPIU_SUM));
   for (PetscInt c = 0; c < num_cells; c++) mean[c] = weight_sum[c] > 0. ? value_sum[c] / weight_sum[c] : 1.;
   PetscCall(PetscSFDestroy(&sf));
-  PetscCall(PetscLayoutDestroy(&layout));
-  PetscCall(PetscFree(product));
+  PetscCall(PetscFree3(input_cell, product, share));
   PetscCall(PetscFree2(value_sum, weight_sum));
   PetscFunctionReturn(0);
 }
@@ -72,17 +77,17 @@ static PetscErrorCode CopyRun(EqmMap from, EqmMap to)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmMapOntoInput(EqmMap repaired, EqmSoup input, const PetscInt *parent, const PetscReal *cell_weight,
-                               EqmMap *map)
+PetscErrorCode EqmMapOntoInput(EqmMap repaired, EqmSoup input, const PetscInt *parent, const PetscInt *vertex,
+                               const PetscReal *cell_weight, EqmMap *map)
 {
   PetscFunctionBegin;
   PetscCall(EqmMapCreate(input, repaired->dim, map));
   PetscCall(CopyRun(repaired, *map));
-  PetscCall(FetchVertices(repaired->soup, input, repaired->dim, repaired->coordinates, (*map)->coordinates));
-  PetscCall(FetchVertices(repaired->soup, input, 1, repaired->vertex_ratio, (*map)->vertex_ratio));
+  PetscCall(FetchVertices(repaired->soup, input, vertex, repaired->dim, repaired->coordinates, (*map)->coordinates));
+  PetscCall(FetchVertices(repaired->soup, input, vertex, 1, repaired->vertex_ratio, (*map)->vertex_ratio));
   PetscCall(GatherMeans(repaired, parent, cell_weight, repaired->cell_ratio, *map, (*map)->cell_ratio));
   if (input->cell_size == 3) {
-    PetscCall(FetchVertices(repaired->soup, input, 1, repaired->conformal_factor, (*map)->conformal_factor));
+    PetscCall(FetchVertices(repaired->soup, input, vertex, 1, repaired->conformal_factor, (*map)->conformal_factor));
     PetscCall(GatherMeans(repaired, parent, cell_weight, repaired->quasi_conformal, *map, (*map)->quasi_conformal));
   }
   (*map)->repaired = repaired;

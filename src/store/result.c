@@ -191,6 +191,22 @@ static PetscErrorCode PutOutcome(EqmH5 h5, EqmMap map)
   PetscFunctionReturn(0);
 }
 
+/* The steps of the preparation in one text. */
+static PetscErrorCode PutPrepared(EqmH5 h5, EqmMap map)
+{
+  char text[EQM_MESSAGE_MAX] = "";
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < map->num_prepared; k++) {
+    PetscCall(PetscStrlcat(text, k ? "; " : "", sizeof(text)));
+    PetscCall(PetscStrlcat(text, map->prepared[k].step, sizeof(text)));
+    PetscCall(PetscStrlcat(text, ": ", sizeof(text)));
+    PetscCall(PetscStrlcat(text, map->prepared[k].what, sizeof(text)));
+  }
+  PetscCall(EqmH5PutText(h5, "prepared", text));
+  PetscFunctionReturn(0);
+}
+
 /* What was repaired before the map could be made. */
 static PetscErrorCode PutRepair(EqmH5 h5, const EqmRepair *repair)
 {
@@ -301,6 +317,7 @@ static PetscErrorCode Fill(EqmH5 h5, EqmMap map)
   PetscCall(DeclareArrays(h5, map));
   PetscCall(PutProvenance(h5, map));
   PetscCall(PutOutcome(h5, map));
+  if (map->num_prepared) PetscCall(PutPrepared(h5, map));
   if (map->repaired) PetscCall(PutRepair(h5, &map->repair));
   PetscCall(EqmH5PutInteger(h5, "complete", 0));
   PetscCall(EqmH5Reserve(h5));

@@ -70,6 +70,21 @@ static void AddRepair(cJSON *root, const EqmRepair *repair)
   AddCount(group, "vertices_unreferenced", repair->vertices_unreferenced);
 }
 
+/* What was done to the input first, step by step. */
+static void AddPrepared(cJSON *root, EqmMap map)
+{
+  cJSON *list = cJSON_AddArrayToObject(root, "prepared");
+
+  for (PetscInt k = 0; k < map->num_prepared; k++) {
+    cJSON *const entry = cJSON_CreateObject();
+
+    AddText(entry, "step", map->prepared[k].step);
+    AddCount(entry, "count", map->prepared[k].count);
+    AddText(entry, "what", map->prepared[k].what);
+    (void)cJSON_AddItemToArray(list, entry);
+  }
+}
+
 static void AddPercentiles(cJSON *object, const EqmStatistics *statistics)
 {
   AddNumber(object, "p25", statistics->p25);
@@ -211,6 +226,7 @@ static char *MakeSummary(EqmMap map)
   char *text;
 
   AddRun(root, map);
+  if (map->num_prepared) AddPrepared(root, map);
   if (map->repaired) AddRepair(root, &map->repair);
   AddQuality(root, map);
   if (map->hessian_eigenvalues) AddHessian(root, map);

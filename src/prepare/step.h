@@ -1,0 +1,53 @@
+/* What a step of the preparation is; private to this folder. */
+#ifndef EQM_STEP_H
+#define EQM_STEP_H
+
+#include "mesh/subdivide.h"
+#include "prepare/prepare.h"
+
+/* A change of a soup: what a step makes, in the numbers of the soup before. */
+typedef struct {
+  EqmSoup soup;     /* replaced by the step, or left alone where there is nothing to do: the report's count is then 0 */
+  EqmRepair repair; /* what EqmSoupRepair has counted */
+  PetscInt *parent; /* per cell of the new slab: cell before, -1: added */
+  PetscBool renumbers; /* vertices of the soup before have other numbers now: */
+  PetscInt *vertex;    /* with it, per vertex of the slab before: number after */
+} EqmChange;
+
+typedef struct {
+  const char *name, *purpose;
+  PetscErrorCode (*run)(const EqmPrepareOptions *options, EqmChange *change, EqmPreparedStep *report);
+} EqmPrepareStep;
+
+PETSC_INTERN PetscErrorCode EqmStepWeld(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
+PETSC_INTERN PetscErrorCode EqmStepSplit(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
+PETSC_INTERN PetscErrorCode EqmStepLargest(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
+PETSC_INTERN PetscErrorCode EqmStepHoles(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
+PETSC_INTERN PetscErrorCode EqmStepRepair(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
+
+/* Replace the soup of a change by one with these added vertices and the cells of the list. Collective. */
+PETSC_INTERN PetscErrorCode EqmChangeAssemble(EqmChange *change, EqmVertexGroup *added, EqmCellList *list);
+
+/* A boundary edge with its position, surface on its left. */
+typedef struct {
+  PetscInt tail, head;
+  PetscReal x[3]; /* of the tail */
+} EqmBoundaryEdge;
+
+/* A patch that fills a loop of `num_boundary` vertices, counterclockwise: those first, then added ones. */
+typedef struct {
+  PetscInt num_boundary, num_vertices, num_triangles;
+  PetscReal *position; /* 3 * num_vertices */
+  PetscInt *triangle;  /* 3 * num_triangles */
+} EqmPatch;
+
+/* `forbidden` edges, pairs of places in the loop with the lower first in ascending order, are edges of the mesh
+   already. Not collective. */
+PETSC_INTERN PetscErrorCode EqmPatchCreate(PetscInt n, const PetscReal *loop, PetscInt num_forbidden,
+                                           const PetscInt (*forbidden)[2], EqmPatch *patch);
+PETSC_INTERN PetscErrorCode EqmPatchRefine(PetscInt num_forbidden, const PetscInt (*forbidden)[2], EqmPatch *patch);
+PETSC_INTERN PetscErrorCode EqmPatchReset(EqmPatch *patch);
+PETSC_INTERN PetscBool EqmPatchIsForbidden(PetscInt a, PetscInt b, PetscInt num_forbidden,
+                                           const PetscInt (*forbidden)[2]);
+
+#endif

@@ -1,0 +1,169 @@
+"""Prepare meshes as scanners deliver them: seams, pieces, holes, pinched vertices, fins, turned triangles. The result is in
+the numbering of the input, what was done is in summary and result.
+
+usage: python3 test_prepare.py EQUIMAP [RANKS]
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy
+
+N = 20  # squares along a side
+
+
+def sheet(holes=(), seam=None):
+    """A bumpy sheet without the squares of `holes`; along the column `seam` it is torn: the right side has vertices of its
+    own."""
+    x, y = numpy.meshgrid(numpy.arange(N + 1), numpy.arange(N + 1), indexing="ij")
+    points = [(a, b, 1.5 * numpy.sin(0.3 * a) * numpy.cos(0.25 * b)) for a, b in zip(x.ravel(), y.ravel())]
+    twin = {}
+    if seam is not None:
+        for b in range(N + 1):
+            twin[seam * (N + 1) + b] = len(points)
+            points.append(points[seam * (N + 1) + b])
+    cells = []
+    for a in range(N):
+        for b in range(N):
+            if (a, b) in holes:
+                continue
+            p, q, r, s = (c * (N + 1) + d for c, d in ((a, b), (a + 1, b), (a + 1, b + 1), (a, b + 1)))
+            if seam is not None and a >= seam:
+                p, q, r, s = (twin.get(v, v) for v in (p, q, r, s))
+            # diagonals leave the corners of the sheet free
+            cells += [(p, q, r), (p, r, s)] if (a < N // 2) == (b < N // 2) else [(p, q, s), (q, r, s)]
+    return points, cells
+
+
+def scan():
+    """A sheet with three holes, two of which touch at a vertex, a fin, a second piece, turned and doubled triangles."""
+    points, cells = sheet(holes={(4, 4), (4, 5), (5, 4), (12, 12), (13, 13), (15, 4)})
+    middle = 8 * (N + 1) + 8
+    fin = len(cells)
+    points.append((8.5, 8.0, 5.0))
+    cells.append((middle, middle + N + 1, len(points) - 1))
+    island = range(len(cells) + 1, len(cells) + 3)
+    cells.append(cells[10])
+    first = len(points)
+    points += [(40.0, 0.0, 0.0), (41.0, 0.0, 0.0), (41.0, 1.0, 0.0), (40.0, 1.0, 0.0)]
+    cells += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
+    for turned in (3, 100):
+        a, b, c = cells[turned]
+        cells[turned] = (a, c, b)
+    return points, cells, fin, list(island)
+
+
+def write_obj(path, points, cells):
+    with open(path, "w") as file:
+        file.writelines("v %.17g %.17g %.17g\n" % tuple(p) for p in points)
+        file.writelines("f %d %d %d\n" % tuple(i + 1 for i in c) for c in cells)
+
+
+def areas(points, cells):
+    p = numpy.asarray(points)[numpy.asarray(cells)]
+    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    return (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
+
+
+def steps_of(path):
+    with open(path) as file:
+        return {entry["step"]: entry["count"] for entry in json.load(file)["prepared"]}
+
+
+def test_scan(run, run_alone):
+    points, cells, fin, island = scan()
+    write_obj("scan.obj", points, cells)
+    refused = run("disk", "scan.obj", "-o", "bad.h5", expected=(3,))
+    assert "disk scan.obj -prepare auto -o OUT" in refused.stderr and not os.path.exists("bad.h5"), refused.stderr
+    done = run("disk", "scan.obj", "-prepare", "auto", "-o", "scan.h5", "-summary", "scan.json")
+    assert "prepared: holes: 4 filled" in done.stdout, done.stdout
+    steps = steps_of("scan.json")
+    assert steps["largest"] == 2 and steps["holes"] == 4, steps  # the fin is a piece of its own once it is cut off
+    with h5py.File("scan.h5") as file:
+        image, mapped = file["map/coordinates"][:], file["cell/mapped"][:]
+        assert image.shape == (len(points), 2) and (file["mesh/cells"][:] == cells).all()
+        parent, whole = file["repaired/parent"][:], file["repaired/cells"][:]
+        place, positions = file["repaired/coordinates"][:], file["repaired/vertices"][:]
+        assert "holes: 4 filled" in str(file.attrs["prepared"]) and file.attrs["folds"] == 0
+    left_out = [fin, fin + 1, *island]
+    assert [c for c in range(len(cells)) if not mapped[c]] == left_out, numpy.flatnonzero(mapped == 0)
+    assert (positions[: len(points)] == points).all() and (place[: len(points)] == image).all()
+    assert (parent < 0).any() and (parent[numpy.argmax(parent < 0) :] < 0).all(), "added cells come last"
+    assert (areas(place, whole) > 0).all() and abs(areas(place, whole).sum() - numpy.pi) < 0.02
+    assert (image[len(points) - 4 :] == 0).all(), "vertices of the piece that was left out"
+
+    for options, name in ((("-prepare", "auto"), "a"), (("-prepare", "auto", "-target", "sphere"), "s")):
+        run("convert", "scan.obj", f"{name}.obj", *options)
+        run_alone("convert", "scan.obj", f"{name}1.obj", *options)
+        with open(f"{name}.obj") as one, open(f"{name}1.obj") as other:
+            assert one.read() == other.read(), "the same on any number of ranks"
+    assert "a closed surface without handles" in run("check", "s.obj").stdout
+    assert "a disk-type surface" in run("check", "a.obj").stdout
+
+
+def test_hole_weight(run):
+    """A hole of little weight has a small image."""
+    points, cells = sheet(holes={(a, b) for a in range(8, 12) for b in range(8, 12)})
+    write_obj("hole.obj", points, cells)
+    share = []
+    for weight in ("1", ".05"):
+        run("disk", "hole.obj", "-prepare", "holes", "-hole_weight", weight, "-o", "hole.h5", expected=(0, 4))
+        with h5py.File("hole.h5") as file:
+            added = file["repaired/parent"][:] < 0
+            area = areas(file["repaired/coordinates"][:], file["repaired/cells"][:])
+        share.append(area[added].sum() / area.sum())
+    assert 0.02 < share[0] < 0.08 and share[1] < 0.15 * share[0], share
+
+
+def test_seam(run):
+    """A torn sheet is sewn; both sides of the seam get the same image. A cut that makes a disk is left alone."""
+    points, cells = sheet(seam=7)
+    write_obj("torn.obj", points, cells)
+    run("disk", "torn.obj", "-prepare", "weld", "-o", "torn.h5", "-summary", "torn.json")
+    assert steps_of("torn.json") == {"weld": N + 1}
+    with h5py.File("torn.h5") as file:
+        image = file["map/coordinates"][:]
+    left = image[7 * (N + 1) : 8 * (N + 1)]
+    assert (left == image[(N + 1) ** 2 :]).all() and abs(left).max() > 0.1
+    assert "can begin" in run("disk", "torn.obj", "-prepare", "auto", "-o", "t.h5", "-dry_run").stdout
+    wide = run("disk", "torn.obj", "-prepare", "weld", "-weld_tolerance", "2", "-o", "t.h5", expected=(2,))
+    assert "-weld_tolerance" in wide.stderr
+
+
+def test_usage(run):
+    points, cells, _, _ = scan()
+    write_obj("scan.obj", points, cells)
+    assert "weld, split, largest, holes" in run("disk", "scan.obj", "-prepare", "mend", "-o", "t.h5", expected=(2,)).stderr
+    assert "there are only" in run("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "9", expected=(2,)).stderr
+    done = run("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "3")
+    assert " 2 triangles" in done.stdout, done.stdout  # the island; the fin is larger
+
+
+def main(equimap, ranks):
+    def runner(ranks):
+        mpirun = ["mpirun", "-n", ranks, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+
+        def run(*arguments, expected=(0,)):
+            done = subprocess.run([*mpirun, equimap, *arguments], capture_output=True, text=True)
+            assert done.returncode in expected, (arguments, done.returncode, done.stdout[-2000:], done.stderr[-2000:])
+            return done
+
+        return run
+
+    run = runner(ranks)
+    test_scan(run, runner("1"))
+    test_hole_weight(run)
+    test_seam(run)
+    test_usage(run)
+    print("prepare: holes filled, pieces left out, seams sewn, non-manifold parts cut apart")
+
+
+if __name__ == "__main__":
+    program = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        main(program, sys.argv[2] if len(sys.argv) > 2 else "1")
+        os.chdir("/")
