@@ -6,7 +6,7 @@
     jobs/paper.py 000 --no-substitutes
     jobs/paper.py 000 --collect                      only the page, of what has been run
 
-Papers are 000 to 004, as in docs/papers.md; the rows are those of jobs/tables/NUMBER.csv. Meshes are looked for in --data
+Papers are 000 to 004, as in docs/papers.md; the rows are those of jobs/tables/NUMBER*.csv. Meshes are looked for in --data
 (EQUIMAP_DATA): by the names of the table (000/foot.obj), and by the sizes and checksums in jobs/papers/meshes.csv. A row whose
 mesh has not the published number of vertices goes into the second table, with those run on substitutes.
 
@@ -156,9 +156,10 @@ def collect(args, groups):
 
 def main():
     args = arguments()
-    rows = [row for row in read_table(HERE / "tables" / f"{args.paper}.csv") if fnmatch.fnmatch(row.name, args.only)]
+    tables = sorted((HERE / "tables").glob(f"{args.paper}*.csv"))  # 001 has a second one, 001-noise
+    rows = [row for table in tables for row in read_table(table) if fnmatch.fnmatch(row.name, args.only)]
     if not rows:
-        raise TableError(f"no row of jobs/tables/{args.paper}.csv is called {args.only}")
+        raise TableError(f"no row of jobs/tables/{args.paper}*.csv is called {args.only}")
     if not args.program and not args.collect:
         raise TableError("there is no program; build it, or say where it is with --program or EQUIMAP")
     exact, instead, folder = prepare(args, rows)

@@ -8,7 +8,7 @@ set -euo pipefail
 
 packages=(gcc libc6-dev make cmake pkg-config python3 python3-numpy python3-h5py
           libopenmpi-dev openmpi-bin libpetsc-real-dev libmumps-dev libmetis-dev libsuitesparse-dev libhdf5-openmpi-dev
-          libopenblas0-serial libxml2-dev libcjson-dev zlib1g-dev libcairo2-dev fonts-dejavu-core)
+          libslepc-real-dev libopenblas0-serial libxml2-dev libcjson-dev zlib1g-dev libcairo2-dev fonts-dejavu-core)
 list_only=no
 for argument in "$@"; do
   case $argument in
