@@ -11,6 +11,7 @@
 #include <equimap/mesh.h>
 #include <equimap/simplex.h>
 
+/* The manifold that a vertex lives on. */
 typedef enum {
   EQM_VERTEX_FREE,   /* anywhere in R^dim */
   EQM_VERTEX_CIRCLE, /* on the unit circle: one degree of freedom, the angle */
@@ -28,7 +29,9 @@ typedef struct {
                        of EQM_VERTEX_ANGLES the two angles; NULL where there are none such */
 } EqmPlace;
 
+/* Where each vertex of a mesh may go, and how it gets there. */
 typedef struct _p_EqmDomain *EqmDomain;
+/* The fields of a domain; read-only after creation. */
 struct _p_EqmDomain {
   EqmMesh mesh;
   const char *name;
@@ -64,8 +67,11 @@ PETSC_EXTERN PetscErrorCode EqmDomainCreateBall(EqmMesh mesh, EqmDomain *domain)
 /* Let the vertices on the sphere move by their spherical coordinates (003 (4), (5)): no isometry, but the coordinates
    that 003 Algorithm 1 is written in. To be called before any place is made. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainTakeSphericalCoordinates(EqmDomain domain);
+/* Free a domain. Collective; NULL is fine. */
 PETSC_EXTERN PetscErrorCode EqmDomainDestroy(EqmDomain *domain);
 
+/* A place for every local vertex of the domain's mesh, at zero; free it again; copy one into another of the same
+   domain. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmPlaceCreate(EqmDomain domain, EqmPlace *place);
 PETSC_EXTERN PetscErrorCode EqmPlaceDestroy(EqmPlace *place);
 PETSC_EXTERN PetscErrorCode EqmPlaceCopy(EqmDomain domain, const EqmPlace *from, EqmPlace *to);

@@ -33,7 +33,7 @@ PETSC_EXTERN PetscErrorCode EqmImageGradientOf(EqmDomain domain, EqmMeasureKind 
    local cell. Either output may be NULL. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmImageDerivatives(EqmDomain domain, const EqmPlace *place, const PetscReal *velocity,
                                                 const PetscReal *acceleration, PetscReal *first, PetscReal *second);
-
+/* The same of another measure than the domain's own. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmImageDerivativesOf(EqmDomain domain, EqmMeasureKind kind, const EqmPlace *place,
                                                   const PetscReal *velocity, const PetscReal *acceleration,
                                                   PetscReal *first, PetscReal *second);
@@ -65,6 +65,7 @@ typedef enum {
   EQM_LAPLACIAN_COTANGENT, /* of the mesh: Dirichlet energy (000 L_S(id)) */
   EQM_LAPLACIAN_STRETCH    /* of the present image: L_S (000 (2d)), of solids L_V (003 (3), corrected) */
 } EqmLaplacianKind;
+/* The weights of a Laplacian of that kind; `place` is looked at by EQM_LAPLACIAN_STRETCH alone. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place,
                                                 PetscReal *weights);
 /* y = L x for `width` components; x per local vertex, y per owned vertex. Not collective. */

@@ -11,6 +11,7 @@
 #include <equimap/energy.h>
 #include <equimap/map.h>
 
+/* Finds a map of a mesh. */
 typedef struct _p_EqmSolver *EqmSolver;
 
 /* EqmSolverCreate - a solver for maps of `mesh` to `target`: "disk", "square", "sphere", "ball" or "conformal".
@@ -60,6 +61,7 @@ typedef enum {
   EQM_MONITOR_NOTE,      /* `text` is a line for people, which ends in a newline */
   EQM_MONITOR_END        /* status and message are final */
 } EqmMonitorEvent;
+/* A function that is called for such events; `context` is that of EqmSolverSetMonitor. Collective. */
 typedef PetscErrorCode (*EqmMonitor)(EqmSolver solver, EqmMonitorEvent event, const char *text, void *context);
 /* EqmSolverSetMonitor - call `monitor` as the solver gets on, on every rank; NULL (as created): nothing. The option
    -quiet takes it away. */

@@ -117,7 +117,11 @@ PetscErrorCode EqmCheckpointEnd(EqmSolver solver)
   PetscFunctionBegin;
   if (!solver->settings.checkpoint[0]) PetscFunctionReturn(0);
   PetscCall(Write(solver, (PetscBool)(solver->iterate->number != known->written || known->finished), PETSC_TRUE));
-  if (solver->status != EQM_STATUS_STOPPED || !known->failing) PetscFunctionReturn(0);
+  if (!known->failing) PetscFunctionReturn(0);
+  if (solver->status != EQM_STATUS_STOPPED) {
+    PetscCall(PetscStrlcat(solver->message, "; the last checkpoint could not be written", sizeof(solver->message)));
+    PetscFunctionReturn(0);
+  }
   solver->status = EQM_STATUS_NOT_CONVERGED;
   PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
                           "stopped on request, but no checkpoint could be written: this is the map so far"));

@@ -1,5 +1,6 @@
 /* The table of formulations: energy x domain, and the methods that solve them. */
 #include "solver/solver_private.h"
+#include "base/nearest.h"
 #include "unfold/unfold.h"
 #include <string.h>
 
@@ -159,7 +160,7 @@ PetscErrorCode EqmFormulationFind(MPI_Comm comm, const char *target, EqmMesh mes
 PetscErrorCode EqmFormulationFindMethod(MPI_Comm comm, const EqmFormulation *formulation, const char *name,
                                         EqmMethodDefaults *defaults)
 {
-  char names[EQM_MESSAGE_MAX];
+  char names[EQM_MESSAGE_MAX], hint[128];
   PetscBool registered;
 
   PetscFunctionBegin;
@@ -172,8 +173,9 @@ PetscErrorCode EqmFormulationFindMethod(MPI_Comm comm, const EqmFormulation *for
   PetscCall(EqmMethodIsForeign(name, &registered));
   if (!registered) {
     PetscCall(EqmFormulationMethodNames(formulation->target, formulation, names, sizeof(names)));
-    EqmFail(comm, EQM_ERR_USAGE, "-method %s: there is no such method for the %s; choose one of %s", name,
-            formulation->domain, names);
+    PetscCall(EqmDidYouMean(name, names, hint, sizeof(hint)));
+    EqmFail(comm, EQM_ERR_USAGE, "-method %s: there is no such method for the %s; choose one of %s%s", name,
+            formulation->domain, names, hint);
   }
   *defaults = (EqmMethodDefaults){.name = name, .method = name, .start = formulation->methods[0].start, .max_it = 100};
   PetscFunctionReturn(0);

@@ -1,5 +1,6 @@
 /* The registry of starts, and their options. */
 #include "start/start.h"
+#include "base/nearest.h"
 
 enum { MOST_STARTS = 64 };
 static const EqmStartType *starts[MOST_STARTS] = {
@@ -23,7 +24,7 @@ PetscErrorCode EqmStartRegister(const EqmStartType *type)
 PetscErrorCode EqmStartFind(MPI_Comm comm, EqmStartFamily family, const char *place, const char *name,
                             const EqmStartType **type)
 {
-  char names[EQM_MESSAGE_MAX];
+  char names[EQM_MESSAGE_MAX], hint[128];
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < MOST_STARTS && starts[k]; k++) {
@@ -34,7 +35,9 @@ PetscErrorCode EqmStartFind(MPI_Comm comm, EqmStartFamily family, const char *pl
     PetscFunctionReturn(0);
   }
   PetscCall(EqmStartNames(family, names, sizeof(names)));
-  EqmFail(comm, EQM_ERR_USAGE, "-start %s: there is no such start for the %s; choose one of %s", name, place, names);
+  PetscCall(EqmDidYouMean(name, names, hint, sizeof(hint)));
+  EqmFail(comm, EQM_ERR_USAGE, "-start %s: there is no such start for the %s; choose one of %s%s", name, place, names,
+          hint);
 }
 
 PetscErrorCode EqmStartNames(EqmStartFamily family, char *text, size_t length)

@@ -34,6 +34,8 @@ REFUSED = [
     (["disk", "mesh.obj", "-o", "x.h5,folder"], ["-o folder is a folder"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-summary", "folder"], ["-summary folder is a folder"]),
     (["convert", "mesh.obj", "x.obj", "-refine"], ["-refine needs a value"]),
+    (["disk", "mesh.obj", "-o", "x.h5", "-method", "fixedpoint"], ["-method fixedpoint", "did you mean fixed-point?"]),
+    (["disk", "mesh.obj", "-o", "x.h5", "-start", "gaurded"], ["-start gaurded", "did you mean guarded?"]),
     (["disk", "mesh.obj", "-o", "x.vut"], ["x.vut", "did you mean .vtu?"]),
     (["convert", "mesh.obj", "x.ojb"], ["x.ojb", "did you mean .obj?"]),
     (["dsik", "mesh.obj"], ["no command 'dsik'", "did you mean disk?"]),

@@ -384,6 +384,7 @@ def check_full_disk(program):
         result = program.succeed(*run, "-restart", "disk/run.ck", "-checkpoint", "disk/run.ck", "-checkpoint_every", 1, *outputs("run"),
                                  codes=(4,))
         assert len([line for line in program.messages(result) if "No space" in line]) == 1, result.stderr
+        assert "the last checkpoint could not be written" in result.stdout, result.stdout
         assert program.read("disk/run.ck") == before
         assert len(history(program, "run.csv")) == 14
         assert sorted(os.listdir(disk)) == ["filler", "run.ck", "run.ck.mesh.h5", "run.ck.previous"], os.listdir(disk)
