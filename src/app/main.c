@@ -160,7 +160,7 @@ static void StartWithoutDaemon(void)
 {
   (void)setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   (void)setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
-  (void)setenv("OMPI_MCA_sharedfp", "^sm", 0);
+  (void)setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
 }
 
 int main(int argc, char **argv)

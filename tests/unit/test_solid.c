@@ -215,7 +215,7 @@ static PetscErrorCode CheckMappedBack(EqmSoup given, EqmSoup mended, const Petsc
     found->cell_ratio[place] = c;
     CHECK(parent[place] == c / 2, "cell %d is a child of %d", (int)c, (int)parent[place]);
   }
-  PetscCall(EqmMapOntoInput(found, given, parent, weight, &map));
+  PetscCall(EqmMapOntoInput(found, given, parent, NULL, weight, &map));
   for (PetscInt k = 0; k < 3 * (given->vertex_end - given->vertex_start); k++) {
     CHECK(map->coordinates[k] == 2. * given->vertices[k], "coordinate %d", (int)k);
   }
