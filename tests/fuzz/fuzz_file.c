@@ -6,7 +6,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 #include "format/hdf5.h"
-#include "register/table.h"
+#include "format/table.h"
 
 #ifdef EQM_FUZZ_HDF5
 static PetscErrorCode Read(const char *file)
