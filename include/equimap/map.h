@@ -163,6 +163,12 @@ PETSC_EXTERN PetscErrorCode EqmMapAddText(EqmMap map, const char *key, const cha
    mesh with the map as fields. Each file appears whole or not at all, and one that was there
    survives a failure. Collective. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWrite(EqmMap map, const char *files);
+/* EqmMapWriteTexture - write the surface itself with its map as texture coordinates, to OBJ or PLY.
+
+   Collective. The unit disk goes to the square [0, 1]^2 by (1 + x)/2, the unit square is the texture as it is; a point of
+   the sphere has its longitude and latitude, each in [0, 1], and triangles that the seam runs through have corners
+   beyond 1. Errors: EQM_ERR_USAGE (another format, a solid), EQM_ERR_IO. */
+PETSC_EXTERN PetscErrorCode EqmMapWriteTexture(EqmMap map, const char *file);
 /* EqmMapCheckWritable - can `files` be written? For before a long run. Suffixes must be known, directories there and
    writable. Collective. Errors: EQM_ERR_USAGE, EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapCheckWritable(MPI_Comm comm, const char *files);

@@ -1,15 +1,17 @@
 /* equimap disk | square | sphere MESH -o OUT: read, diagnose, distribute, minimise, measure, write. */
 #include "app.h"
 #include "base/stop.h"
+#include "format/format.h"
 #include "intake/intake.h"
 #include "solver/inner.h"
 #include "store/output.h"
+#include <string.h>
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
       density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN], checkpoint[PETSC_MAX_PATH_LEN],
-      restart[PETSC_MAX_PATH_LEN];
-  PetscBool has_output, has_summary, has_history, has_density, has_histogram, has_checkpoint, has_restart;
+      restart[PETSC_MAX_PATH_LEN], uv[PETSC_MAX_PATH_LEN];
+  PetscBool has_uv, has_output, has_summary, has_history, has_density, has_histogram, has_checkpoint, has_restart;
   EqmIntakeOptions input;
   EqmStopFile stop_file;
   char usage[PETSC_MAX_PATH_LEN];
@@ -26,6 +28,11 @@ static PetscErrorCode AskOptions(MapOptions *options)
                                "where the map goes: .h5 (everything, with an .xmf for ParaView), .obj .off .ply .vtu "
                                ".vtk .msh .mesh .gii; several with commas",
                                NULL, "", options->output, sizeof(options->output), &options->has_output));
+  PetscCall(
+      PetscOptionsString("-uv",
+                         "write the surface itself with the map as texture coordinates: .obj (vt) or .ply (s, t); "
+                         "of spheres longitude and latitude",
+                         NULL, "", options->uv, sizeof(options->uv), &options->has_uv));
   PetscCall(PetscOptionsString("-summary", "write the run's figures as JSON", NULL, "", options->summary,
                                sizeof(options->summary), &options->has_summary));
   PetscCall(PetscOptionsString("-history", "write a row per iteration as CSV", NULL, "", options->history,
@@ -63,6 +70,19 @@ static PetscErrorCode AskOptions(MapOptions *options)
   PetscFunctionReturn(0);
 }
 
+/* -uv: surfaces only, formats with texture coordinates. */
+static PetscErrorCode CheckTexture(const char *command, const char *file)
+{
+  const EqmFormat *const format = EqmFormatOfSuffix(file);
+
+  PetscFunctionBegin;
+  if (!format || !format->writes_texture)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-uv %s: texture coordinates are written to .obj or .ply", file);
+  if (!strcmp(command, "ball"))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-uv %s: solids have no texture coordinates", file);
+  PetscFunctionReturn(0);
+}
+
 /* Refuse before the long run what would be refused after it. */
 static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *options)
 {
@@ -87,12 +107,15 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   options->input.usage = options->usage;
   options->input.target = line->command;
   PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->output));
+  if (options->has_uv) PetscCall(CheckTexture(line->command, options->uv));
+  if (options->has_uv) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->uv));
   if (options->has_summary) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->summary));
   if (options->has_history) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->history));
   if (options->has_histogram) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->histogram));
   if (!options->has_checkpoint) PetscFunctionReturn(0);
   PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->checkpoint));
   PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->output));
+  if (options->has_uv) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->uv));
   if (options->has_summary) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->summary));
   if (options->has_history) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->history));
   if (options->has_histogram) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->histogram));
@@ -108,6 +131,7 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
   PetscCall(EqmMapSetCost(map, ledger));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
   if (status != EQM_STATUS_STOPPED) PetscCall(EqmMapWrite(map, options->output)); /* there is the checkpoint */
+  if (options->has_uv && status != EQM_STATUS_STOPPED) PetscCall(EqmMapWriteTexture(map, options->uv));
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   if (options->has_histogram) PetscCall(EqmMapWriteHistogram(map, options->histogram));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));

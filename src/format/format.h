@@ -38,6 +38,7 @@ typedef struct {
   EqmParallelReader read_parallel;                          /* used instead of `parse` where it is there */
   EqmParallelWriter write_parallel;                         /* used instead of `write` where it is there */
   EqmLoader load;                                           /* NULL: a mesh is one file */
+  PetscBool writes_texture;                                 /* mesh->texture is written */
 } EqmFormat;
 
 /* A row of the list of formats, in the order of recognition; NULL outside the list. Not collective. */

@@ -3,6 +3,7 @@
 #include "format.h"
 #include "input.h"
 #include "points.h"
+#include "seam.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,8 +15,7 @@ typedef struct {
   EqmSerialMesh mesh, read; /* the given mesh, the mesh in the file */
   PetscInt dim, num;        /* of the image: coordinates per vertex, vertices */
   PetscReal *points;        /* 3 * num; the third is 0 where dim is 2 */
-  PetscInt *cut;            /* with texture: corners of the mesh's cells among the vertices of the cut mesh */
-  PetscInt *original;       /* with texture: the vertex of the mesh that each vertex of the cut mesh is */
+  EqmSeams seams;           /* of the texture, where that is the image */
   char error[EQM_MESSAGE_MAX];
 } Root;
 
@@ -70,49 +70,19 @@ static PetscBool Repeats(const Root *root)
   return PETSC_TRUE;
 }
 
-/* The vertex of the cut mesh at this place of the texture: one that vertex has already, or a new one. `first` and
-   `next` chain the vertices of the cut mesh that are one vertex of the mesh. */
-static PetscInt FindCopy(Root *root, PetscInt vertex, const PetscReal uv[2], PetscBool *used, PetscInt *next)
-{
-  PetscInt copy = vertex, last = vertex;
-
-  if (!used[vertex]) {
-    used[vertex] = PETSC_TRUE;
-  } else {
-    for (; copy >= 0; last = copy, copy = next[copy]) {
-      if (root->points[3 * (size_t)copy] == uv[0] && root->points[3 * (size_t)copy + 1] == uv[1]) return copy;
-    }
-    copy = next[last] = root->num++;
-  }
-  next[copy] = -1;
-  root->original[copy] = vertex;
-  root->points[3 * (size_t)copy] = uv[0];
-  root->points[3 * (size_t)copy + 1] = uv[1];
-  return copy;
-}
-
-/* The mesh cut where the texture has seams: a vertex for each different pair of a vertex and a place in the texture.
-   The first place that a vertex is given keeps its number. */
-static PetscErrorCode CutAlongSeams(Root *root)
+/* The image is the texture: that of the mesh cut along the seams. */
+static PetscErrorCode TakeTexture(Root *root)
 {
   const EqmSerialMesh *const mesh = &root->mesh;
-  const size_t num_corners = 3 * (size_t)mesh->num_cells, most = (size_t)mesh->num_vertices + num_corners;
-  PetscBool *used;
-  PetscInt *next;
 
-  if (most > (size_t)PETSC_MAX_INT) return Refuse(root, EQM_ERR_MESH, "has too many corners for indices");
+  EqmTry(EqmSeamsFind(mesh->num_vertices, mesh->num_cells, mesh->cells, root->read.texture, &root->seams));
   root->dim = 2;
-  root->num = mesh->num_vertices;
-  EqmTry(PetscCalloc1(3 * most, &root->points));
-  EqmTry(PetscMalloc1(most, &root->original));
-  EqmTry(PetscMalloc1(num_corners, &root->cut));
-  EqmTry(PetscCalloc1((size_t)mesh->num_vertices, &used));
-  EqmTry(PetscMalloc1(most, &next));
-  for (PetscInt v = 0; v < mesh->num_vertices; ++v) root->original[v] = v;
-  for (size_t i = 0; i < num_corners; ++i)
-    root->cut[i] = FindCopy(root, mesh->cells[i], root->read.texture + 2 * i, used, next);
-  EqmTry(PetscFree(used));
-  return PetscFree(next);
+  root->num = root->seams.num;
+  EqmTry(PetscCalloc1(3 * (size_t)root->num + 1, &root->points));
+  for (size_t i = 0; i < (size_t)root->num; ++i) {
+    for (size_t k = 0; k < 2; ++k) root->points[3 * i + k] = root->seams.point[2 * i + k];
+  }
+  return 0;
 }
 
 /* The image stands in the vertices: of the plane where all have one height, and always in space for solids. */
@@ -132,7 +102,7 @@ static PetscErrorCode TakeVertices(Root *root, PetscInt num, PetscReal **points)
 static PetscErrorCode TakeMesh(Root *root, EqmImageSource source)
 {
   if (source != EQM_IMAGE_VERTICES && root->mesh.cell_size == 3 && root->read.texture && Repeats(root))
-    return CutAlongSeams(root);
+    return TakeTexture(root);
   if (source == EQM_IMAGE_TEXTURE) {
     return Refuse(root, EQM_ERR_MESH,
                   root->read.texture
@@ -211,12 +181,12 @@ static PetscErrorCode MakeCutSoup(EqmSoup soup, Root *root, EqmSoup *cut)
   EqmSerialMesh serial = {.num_vertices = root->num, .num_cells = root->mesh.num_cells, .cell_size = 3};
 
   PetscFunctionBegin;
-  if (root->cut) { /* rank 0 */
+  if (root->seams.corner) { /* rank 0 */
     PetscCall(PetscMalloc1(3 * (size_t)root->num, &serial.vertices));
     for (size_t i = 0; i < (size_t)root->num; ++i)
-      PetscCall(PetscArraycpy(serial.vertices + 3 * i, root->mesh.vertices + 3 * (size_t)root->original[i], 3));
-    serial.cells = root->cut;
-    root->cut = NULL;
+      PetscCall(PetscArraycpy(serial.vertices + 3 * i, root->mesh.vertices + 3 * (size_t)root->seams.original[i], 3));
+    serial.cells = root->seams.corner;
+    root->seams.corner = NULL;
   }
   PetscCall(EqmSoupCreateFromRoot(soup->comm, &serial, soup->file, cut));
   if (soup->density) {
@@ -252,7 +222,7 @@ static PetscErrorCode DealPoints(Root *root, EqmImage *image)
 
 static PetscErrorCode FillImage(EqmSoup soup, Root *root, EqmImage *image)
 {
-  PetscInt shape[3] = {root->dim, root->original ? 1 : 0, root->num - root->mesh.num_vertices};
+  PetscInt shape[3] = {root->dim, root->seams.original ? 1 : 0, root->num - root->mesh.num_vertices};
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Bcast(shape, 3, MPIU_INT, 0, soup->comm));
@@ -286,8 +256,7 @@ PetscErrorCode EqmImageRead(EqmSoup soup, const char *file, EqmImageSource sourc
   PetscCall(EqmSerialMeshReset(&root.mesh));
   PetscCall(EqmSerialMeshReset(&root.read));
   PetscCall(PetscFree(root.points));
-  PetscCall(PetscFree(root.cut));
-  PetscCall(PetscFree(root.original));
+  PetscCall(EqmSeamsReset(&root.seams));
   PetscCall(code);
   PetscFunctionReturn(0);
 }

@@ -2,6 +2,7 @@
  */
 #include "builder.h"
 #include "format.h"
+#include "seam.h"
 
 #include <string.h>
 
@@ -163,6 +164,24 @@ static PetscErrorCode ParseObj(const char *bytes, size_t length, EqmSerialMesh *
   return EqmBuilderFinish(&builder, ParseStatements(&in, &builder), mesh);
 }
 
+/* Texture points, one for each different pair of a vertex and a point, and faces that name both. */
+static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, const EqmSerialMesh *mesh)
+{
+  EqmSeams seams;
+
+  EqmTry(EqmSeamsFind(mesh->num_vertices, mesh->num_cells, mesh->cells, mesh->texture, &seams));
+  for (PetscInt i = 0; i < seams.num; ++i) {
+    EqmAtomicWrite(file, "vt ", 3);
+    EqmAtomicPrintReals(file, 2, seams.point + 2 * (size_t)i, ' ');
+    EqmAtomicWrite(file, "\n", 1);
+  }
+  for (size_t i = 0; i < 3 * (size_t)mesh->num_cells; ++i) {
+    EqmAtomicPrint(file, "%s%lld/%lld%s", i % 3 ? " " : "f ", (long long)mesh->cells[i] + 1,
+                   (long long)seams.corner[i] + 1, i % 3 == 2 ? "\n" : "");
+  }
+  return EqmSeamsReset(&seams);
+}
+
 /* Write an OBJ file. See EqmWriter. */
 static PetscErrorCode WriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                PetscInt num_fields, char *error, size_t error_length)
@@ -173,6 +192,7 @@ static PetscErrorCode WriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, c
     EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
     EqmAtomicWrite(file, "\n", 1);
   }
+  if (mesh->texture) return WriteTexturedFaces(file, mesh);
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
     const PetscInt *cell = mesh->cells + 3 * (size_t)i;
 
@@ -181,5 +201,9 @@ static PetscErrorCode WriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, c
   return 0;
 }
 
-EQM_DEFINE_FORMAT(Obj) = {
-    .name = "OBJ", .suffixes = "obj", .recognise = RecogniseObj, .parse = ParseObj, .write = WriteObj};
+EQM_DEFINE_FORMAT(Obj) = {.name = "OBJ",
+                          .suffixes = "obj",
+                          .recognise = RecogniseObj,
+                          .parse = ParseObj,
+                          .write = WriteObj,
+                          .writes_texture = PETSC_TRUE};

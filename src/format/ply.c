@@ -374,5 +374,9 @@ static PetscErrorCode ParsePly(const char *bytes, size_t length, EqmSerialMesh *
   return EqmBuilderFinish(&builder, code, mesh);
 }
 
-EQM_DEFINE_FORMAT(Ply) = {
-    .name = "PLY", .suffixes = "ply", .recognise = RecognisePly, .parse = ParsePly, .write = EqmWritePly};
+EQM_DEFINE_FORMAT(Ply) = {.name = "PLY",
+                          .suffixes = "ply",
+                          .recognise = RecognisePly,
+                          .parse = ParsePly,
+                          .write = EqmWritePly,
+                          .writes_texture = PETSC_TRUE};

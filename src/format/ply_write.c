@@ -1,7 +1,9 @@
-/* PLY, binary little endian, with fields as properties. */
+/* PLY, binary little endian, with fields as properties. Texture coordinates become s and t of the vertices, or, where
+   there are seams, a list texcoord of the faces, as MeshLab has it. */
 #include "writers.h"
 #include "input.h"
 #include "scalar.h"
+#include "seam.h"
 
 /* Names may not have blanks in PLY. */
 static void PrintFieldHeader(EqmAtomicFile *file, const EqmField *field)
@@ -25,38 +27,68 @@ static void WriteFields(EqmAtomicFile *file, const EqmField *fields, PetscInt nu
   }
 }
 
-static void PrintHeader(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields)
+typedef enum { TEXTURE_NONE, TEXTURE_OF_VERTICES, TEXTURE_OF_CORNERS } Texture;
+
+static void PrintHeader(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
+                        Texture texture)
 {
   EqmAtomicPrint(file, "ply\nformat binary_little_endian 1.0\ncomment equimap %s\nelement vertex %lld\n", EqmVersion(),
                  (long long)mesh->num_vertices);
   EqmAtomicPrint(file, "property double x\nproperty double y\nproperty double z\n");
+  if (texture == TEXTURE_OF_VERTICES) EqmAtomicPrint(file, "property double s\nproperty double t\n");
   for (PetscInt f = 0; f < num_fields; ++f) {
     if (!fields[f].on_cells) PrintFieldHeader(file, &fields[f]);
   }
   EqmAtomicPrint(file, "element face %lld\nproperty list uchar int vertex_indices\n", (long long)mesh->num_cells);
+  if (texture == TEXTURE_OF_CORNERS) EqmAtomicPrint(file, "property list uchar float texcoord\n");
   for (PetscInt f = 0; f < num_fields; ++f) {
     if (fields[f].on_cells) PrintFieldHeader(file, &fields[f]);
   }
   EqmAtomicPrint(file, "end_header\n");
 }
 
+static PetscErrorCode ChooseTexture(const EqmSerialMesh *mesh, EqmSeams *seams, Texture *texture)
+{
+  *seams = (EqmSeams){0};
+  *texture = TEXTURE_NONE;
+  if (!mesh->texture) return 0;
+  EqmTry(EqmSeamsFind(mesh->num_vertices, mesh->num_cells, mesh->cells, mesh->texture, seams));
+  *texture = seams->num == mesh->num_vertices ? TEXTURE_OF_VERTICES : TEXTURE_OF_CORNERS;
+  return 0;
+}
+
+static void WriteFace(EqmAtomicFile *file, const EqmSerialMesh *mesh, PetscInt i, Texture texture)
+{
+  const PetscInt *cell = mesh->cells + 3 * (size_t)i;
+  const int32_t corners[3] = {(int32_t)cell[0], (int32_t)cell[1], (int32_t)cell[2]};
+  float uv[6];
+
+  EqmAtomicWrite(file, "\3", 1);
+  EqmAtomicWrite(file, corners, sizeof(corners));
+  if (texture != TEXTURE_OF_CORNERS) return;
+  for (size_t k = 0; k < 6; ++k) uv[k] = (float)mesh->texture[6 * (size_t)i + k];
+  EqmAtomicWrite(file, "\6", 1);
+  EqmAtomicWrite(file, uv, sizeof(uv));
+}
+
 /* EqmWritePly - write a binary PLY file. See EqmWriter. */
 PetscErrorCode EqmWritePly(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
                            char *error, size_t error_length)
 {
+  EqmSeams seams;
+  Texture texture;
+
   EqmTry(EqmRequireTriangles(mesh, "PLY", error, error_length));
-  PrintHeader(file, mesh, fields, num_fields);
+  EqmTry(ChooseTexture(mesh, &seams, &texture));
+  PrintHeader(file, mesh, fields, num_fields, texture);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
     EqmAtomicWrite(file, mesh->vertices + 3 * (size_t)i, 3 * sizeof(double));
+    if (texture == TEXTURE_OF_VERTICES) EqmAtomicWrite(file, seams.point + 2 * (size_t)i, 2 * sizeof(double));
     WriteFields(file, fields, num_fields, PETSC_FALSE, i);
   }
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    const PetscInt *cell = mesh->cells + 3 * (size_t)i;
-    const int32_t corners[3] = {(int32_t)cell[0], (int32_t)cell[1], (int32_t)cell[2]};
-
-    EqmAtomicWrite(file, "\3", 1);
-    EqmAtomicWrite(file, corners, sizeof(corners));
+    WriteFace(file, mesh, i, texture);
     WriteFields(file, fields, num_fields, PETSC_TRUE, i);
   }
-  return 0;
+  return EqmSeamsReset(&seams);
 }

@@ -67,6 +67,36 @@ def check_texture(program, vertices, cells, uv, truth):
     assert result.returncode == 3 and "no texture coordinates" in result.stderr, result
 
 
+def check_written(program):
+    """-uv writes the surface with its map as texture, which is measured as the map itself; spheres with their seam split."""
+    program.succeed("disk", "hills.obj", "-o", "again.h5", "-uv", "disk.uv.obj", "-quiet")
+    program.succeed("square", "hills.obj", "-o", "square.h5", "-uv", "square.uv.ply", "-quiet")
+    for result, texture in (("again.h5", "disk.uv.obj"), ("square.h5", "square.uv.ply")):
+        truth, _ = measured(program, "hills.obj", result)
+        summary, printed = measured(program, "hills.obj", texture)
+        check_same(summary, truth, 1e-9, texture)
+        assert "texture coordinates\n" in printed, printed
+    vertices, cells = read_obj(program.file("disk.uv.obj"))
+    plain, plain_cells = read_obj(program.file("hills.obj"))
+    assert numpy.array_equal(vertices, plain) and numpy.array_equal(cells, plain_cells)
+    program.succeed("sphere", "head.obj", "-o", "head.h5", "-uv", "head.uv.obj", "-max_it", 1, "-quiet", codes=(0, 4))
+    rows = [line.split() for line in program.read("head.uv.obj").decode().splitlines()]
+    uv = numpy.array([row[1:] for row in rows if row[0] == "vt"], float)
+    vertices, cells = read_obj(program.file("head.uv.obj"))
+    corners = numpy.array([[int(word.split("/")[1]) - 1 for word in row[1:]] for row in rows if row[0] == "f"])
+    with h5py.File(program.file("head.h5"), "r") as result:
+        image = result["/map/coordinates"][...]
+    assert len(uv) > len(vertices) and uv.min() >= 0 and uv[:, 1].max() <= 1
+    longitude, latitude = 2 * numpy.pi * (uv[:, 0] - 0.5), numpy.pi * (uv[:, 1] - 0.5)
+    points = numpy.stack([numpy.cos(latitude) * numpy.cos(longitude), numpy.cos(latitude) * numpy.sin(longitude), numpy.sin(latitude)], 1)
+    assert abs(points[corners] - image[cells]).max() < 1e-6
+    u = uv[corners, 0]
+    assert (u.max(1) - u.min(1) <= 0.5).mean() > 0.99  # but for triangles around a pole
+    for name in ("no.stl", "no.h5"):
+        refused = program.run("disk", "hills.obj", "-o", "x.h5", "-uv", name)
+        assert refused.returncode == 2 and "-uv" in refused.stderr, refused
+
+
 def check_points(program, uv, truth):
     """CSV with and without header and numbers, NPY of both precisions and orders."""
     order = numpy.random.RandomState(5).permutation(len(uv))
@@ -118,6 +148,7 @@ def main():
         check_texture(program, vertices, cells, uv, truth)
         check_points(program, uv, truth)
         check_sphere(program)
+        check_written(program)
 
 
 if __name__ == "__main__":
