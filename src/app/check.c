@@ -3,7 +3,7 @@
 #include "base/atomicfile.h"
 #include "intake/intake.h"
 #include "mesh/target.h"
-#include <cjson/cJSON.h>
+#include "check_prepare.h"
 
 enum { MAX_TARGETS = 16 };
 static const char *const finding_names[EQM_NUM_FINDINGS] = {"not_finite",
@@ -39,6 +39,7 @@ typedef struct {
   EqmRepair repair;
   const char *file;
   EqmStatus status;
+  cJSON *prepared; /* what -prepare auto would do, or NULL */
 } CheckReport;
 
 static PetscErrorCode ReadOptions(CheckOptions *options)
@@ -196,6 +197,7 @@ static char *MakeSummary(const CheckReport *report, const char *message)
     cJSON_AddNumberToObject(group, "vertices_added", (double)report->repair.vertices_added);
     cJSON_AddNumberToObject(group, "vertices_unreferenced", (double)report->repair.vertices_unreferenced);
   }
+  if (report->prepared) cJSON_AddItemReferenceToObject(root, "preparation", report->prepared);
   text = cJSON_Print(root);
   cJSON_Delete(root);
   return text;
@@ -261,9 +263,11 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
   if (soup->note[0]) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  note              %s\n", soup->note));
   if (report.repaired) PetscCall(EqmPrintRepair(PETSC_COMM_WORLD, NULL, &report.repair));
   PetscCall(PrintVerdicts(&report));
+  if (!options.repair) PetscCall(EqmCheckPreparation(soup, report.num_targets, report.takes, &report.prepared));
   if (options.summary[0]) PetscCall(WriteSummary(&report, options.summary));
   if (options.out[0]) PetscCall(EqmSoupWrite(soup, options.out));
   PetscCall(EqmSoupDestroy(&soup));
+  cJSON_Delete(report.prepared);
   *status = report.status;
   PetscFunctionReturn(0);
 }

@@ -186,8 +186,24 @@ static PetscErrorCode PrintWork(MPI_Comm comm, const EqmMapCost *cost)
   PetscFunctionReturn(0);
 }
 
-/* A closing table for people. */
-static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
+/* The mesh that was mapped in the file's place. */
+static PetscErrorCode PrintPrepared(MPI_Comm comm, EqmMap prepared)
+{
+  const EqmDistortion *d;
+  PetscReal final;
+
+  PetscFunctionBegin;
+  if (!prepared) PetscFunctionReturn(0);
+  PetscCall(EqmMapGetDistortion(prepared, &d));
+  PetscCall(EqmMapGetEnergies(prepared, NULL, &final));
+  PetscCall(PetscPrintf(comm,
+                        "  prepared mesh energy %.6e   sd %.3e   min %.4g   max %.4g   folds %" PetscInt64_FMT "\n",
+                        (double) final, (double)d->ratio.sd, (double)d->ratio.min, (double)d->ratio.max, d->folds));
+  PetscFunctionReturn(0);
+}
+
+/* A closing table for people: the map of the file's mesh, and that of the prepared mesh if there is one. */
+static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map, EqmMap prepared)
 {
   const EqmDistortion *d;
   const EqmMapCost *cost;
@@ -211,7 +227,8 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
                         " rank%s x %" PetscInt_FMT " thread%s\n",
                         soup->file, soup->num_vertices, soup->num_cells, cost->ranks, cost->ranks == 1 ? "" : "s",
                         cost->threads, cost->threads == 1 ? "" : "s"));
-  if (options->input.quiet) PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(status), message));
+  if (options->input.quiet || (prepared && status == EQM_STATUS_FOLDS))
+    PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(status), message));
   PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double) final, (double)initial));
   PetscCall(EqmMapViewRatios(map));
   if (!is_solid)
@@ -220,6 +237,7 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map)
   PetscCall(PetscPrintf(comm, "  folds         %" PetscInt64_FMT, d->folds));
   if (is_solid) PetscCall(PetscPrintf(comm, "   on the boundary %" PetscInt64_FMT, boundary_folds));
   PetscCall(PetscPrintf(comm, "\n"));
+  PetscCall(PrintPrepared(comm, prepared));
   PetscCall(PrintWork(comm, cost));
   PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)cost->memory_total,
                         status == EQM_STATUS_STOPPED ? options->checkpoint : options->output));
@@ -245,9 +263,10 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(EqmSolverSolve(solver));
   PetscCall(EqmSolverGetMap(solver, input->mapped, &found));
   PetscCall(EqmIntakeTakeMap(input, mesh, found, &map));
+  PetscCall(EqmIntakeMeasureGiven(input, ledger, found, map));
   PetscCall(TakeEigenvalues(options, ledger, solver, map));
   PetscCall(Write(options, ledger, map));
-  PetscCall(PrintResult(options, map));
+  PetscCall(PrintResult(options, map, map == found ? NULL : found));
   PetscCall(EqmMapGetStatus(map, status, NULL));
   if (map != found) PetscCall(EqmMapDestroy(&map));
   PetscCall(EqmMapDestroy(&found));

@@ -44,6 +44,9 @@ PETSC_INTERN PetscErrorCode EqmIntakeChoose(MPI_Comm comm, const char *named, co
 PETSC_INTERN PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger,
                                           EqmIntake *intake);
 PETSC_INTERN PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap found, EqmMap *map);
+/* ---- given.c */
+PETSC_INTERN PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, EqmMap found, EqmMap map);
+/* ---- intake.c */
 PETSC_INTERN PetscErrorCode EqmIntakeDestroy(EqmIntake *intake);
 PETSC_INTERN PetscErrorCode EqmPrintRepair(MPI_Comm comm, const char *part, const EqmRepair *repair);
 PETSC_INTERN PetscErrorCode EqmPrintPreparation(MPI_Comm comm, const char *part, const EqmPreparation *preparation);

@@ -4,6 +4,9 @@
 #include "prepare/step.h"
 #include "geometry/simplex.h"
 
+/* Triangles grow towards the middle, so that a loop of n edges takes not n^2 of them. */
+#define GROWTH 1.2
+
 enum { MOST_ROUNDS = 20, MOST_PASSES = 12, SMOOTHING_SWEEPS = 30, MOST_TRIANGLES = 4000000 };
 
 /* Half-edges of all triangles, sorted by their ends. */
@@ -152,7 +155,7 @@ static PetscErrorCode InsertCenters(EqmPatch *patch, PetscReal **scale, PetscInt
 
     if (!WantsCenter(patch, v, *scale, center, &mean)) continue;
     PetscCall(PetscArraycpy(patch->position + 3 * fresh, center, 3));
-    (*scale)[patch->num_vertices++] = mean;
+    (*scale)[patch->num_vertices++] = GROWTH * mean;
     v[2] = fresh; /* a b fresh */
     added[0] = b;
     added[1] = c;

@@ -1,0 +1,183 @@
+/* What a map of a prepared mesh does to the cells of the file: these the user gets, so these are measured. */
+#include "intake/intake.h"
+#include "base/rows.h"
+#include "geometry/simplex.h"
+#include "store/map_private.h"
+#include <string.h>
+
+/* The cells of the file that have been mapped, as a mesh of their own. */
+typedef struct {
+  EqmSoup soup;
+  PetscInt *cell; /* per cell of its slab its place in the slab of the file's mesh */
+} MappedCells;
+
+/* Normal of a triangle, not normalised. */
+static void Normal(const PetscReal *corner, PetscReal normal[3])
+{
+  PetscReal u[3], v[3];
+
+  for (int k = 0; k < 3; k++) {
+    u[k] = corner[3 + k] - corner[k];
+    v[k] = corner[6 + k] - corner[k];
+  }
+  EqmCross(u, v, normal);
+}
+
+/* Does a cell of the prepared mesh, per cell of its slab, run the other way round than the one it comes from? Parts of
+   a triangle lie in its plane. Tetrahedra are turned when the mesh is made. */
+static PetscErrorCode FindTurned(const EqmIntake *intake, PetscInt num, const PetscInt *child, const PetscInt *parent,
+                                 PetscInt *turned)
+{
+  const EqmSoup given = intake->given, mapped = intake->mapped;
+  PetscInt *corner;
+  PetscReal *before, *after;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(turned, num));
+  if (given->cell_size != 3) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc3(3 * num, &corner, 9 * num, &before, 9 * num, &after));
+  PetscCall(
+      EqmFetchRows(given->comm, given->cell_end - given->cell_start, num, parent, MPIU_INT, 3, given->cells, corner));
+  PetscCall(EqmFetchRows(given->comm, given->vertex_end - given->vertex_start, 3 * num, corner, MPIU_REAL, 3,
+                         given->vertices, before));
+  for (PetscInt k = 0; k < 3 * num; k++) corner[k] = mapped->cells[3 * child[k / 3] + k % 3];
+  PetscCall(EqmFetchRows(given->comm, mapped->vertex_end - mapped->vertex_start, 3 * num, corner, MPIU_REAL, 3,
+                         mapped->vertices, after));
+  for (PetscInt k = 0; k < num; k++) {
+    PetscReal m[3], n[3];
+
+    Normal(before + 9 * k, m);
+    Normal(after + 9 * k, n);
+    turned[k] = EqmDot3(m, n) < 0.;
+  }
+  PetscCall(PetscFree3(corner, before, after));
+  PetscFunctionReturn(0);
+}
+
+/* Per cell of the file's slab: 0 not mapped, 1 mapped, 2 mapped turned over. */
+static PetscErrorCode MarkCells(const EqmIntake *intake, PetscInt *mark)
+{
+  const PetscInt count = intake->given->cell_end - intake->given->cell_start;
+  const PetscInt num = intake->mapped->cell_end - intake->mapped->cell_start;
+  PetscInt num_children = 0, *child, *parent, *value;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(num, &child, num, &parent, num, &value));
+  for (PetscInt c = 0; c < num; c++) {
+    if (intake->parent[c] < 0) continue;
+    child[num_children] = c;
+    parent[num_children++] = intake->parent[c];
+  }
+  PetscCall(FindTurned(intake, num_children, child, parent, value));
+  for (PetscInt k = 0; k < num_children; k++) value[k]++;
+  PetscCall(PetscArrayzero(mark, count));
+  PetscCall(EqmPutRows(intake->given->comm, count, num_children, parent, MPIU_INT, 1, value, mark));
+  PetscCall(PetscFree3(child, parent, value));
+  PetscFunctionReturn(0);
+}
+
+/* All vertices of the file, and those of its cells that have been mapped, turned as they were. */
+static PetscErrorCode CollectMapped(EqmSoup given, const PetscInt *mark, MappedCells *cells)
+{
+  const PetscInt cs = given->cell_size, count = given->cell_end - given->cell_start;
+  const PetscInt num_vertices = given->vertex_end - given->vertex_start;
+  PetscInt num = 0, *corner;
+  PetscReal *vertices, *density = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * num_vertices, &vertices));
+  PetscCall(PetscArraycpy(vertices, given->vertices, 3 * num_vertices));
+  PetscCall(PetscMalloc1(cs * count, &corner));
+  PetscCall(PetscMalloc1(count, &cells->cell));
+  if (given->density) PetscCall(PetscMalloc1(count + 1, &density));
+  for (PetscInt c = 0; c < count; c++) {
+    PetscInt *const v = corner + cs * num, last = given->cells[cs * c + cs - 1];
+
+    if (!mark[c]) continue;
+    PetscCall(PetscArraycpy(v, given->cells + cs * c, cs));
+    if (mark[c] == 2) {
+      v[cs - 1] = v[cs - 2];
+      v[cs - 2] = last;
+    }
+    if (density) density[num] = given->density[c];
+    cells->cell[num++] = c;
+  }
+  PetscCall(EqmSoupCreateFromSlabs(given->comm, cs, num_vertices, vertices, num, corner, given->file, &cells->soup));
+  cells->soup->density = density;
+  PetscFunctionReturn(0);
+}
+
+/* Distortion and ratios of a map of the mapped cells alone become those of the map of the file's mesh. */
+static PetscErrorCode TakeMeasures(EqmMap measured, const MappedCells *cells, EqmMap map)
+{
+  const PetscInt num = cells->soup->cell_end - cells->soup->cell_start;
+  const PetscInt num_vertices = map->soup->vertex_end - map->soup->vertex_start;
+
+  PetscFunctionBegin;
+  map->distortion = measured->distortion;
+  for (PetscInt c = 0; c < num; c++) {
+    map->cell_ratio[cells->cell[c]] = measured->cell_ratio[c];
+    if (map->quasi_conformal) map->quasi_conformal[cells->cell[c]] = measured->quasi_conformal[c];
+  }
+  PetscCall(PetscArraycpy(map->vertex_ratio, measured->vertex_ratio, num_vertices));
+  if (map->conformal_factor) PetscCall(PetscArraycpy(map->conformal_factor, measured->conformal_factor, num_vertices));
+  PetscFunctionReturn(0);
+}
+
+/* What the prepared mesh's own map is like goes beside; folds of the file's own cells decide how the run has ended. */
+static PetscErrorCode Judge(EqmMap found, const char *target, EqmMap map)
+{
+  const PetscBool keeps_angles = (PetscBool)!strcmp(target, "conformal");
+  const PetscInt64 folds = map->distortion.folds;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMapAddFigure(map, "prepared_mesh.energy", found->energy_final));
+  PetscCall(EqmMapAddFigure(map, "prepared_mesh.ratio_sd", found->distortion.ratio.sd));
+  PetscCall(EqmMapAddFigure(map, "prepared_mesh.ratio_min", found->distortion.ratio.min));
+  PetscCall(EqmMapAddFigure(map, "prepared_mesh.ratio_max", found->distortion.ratio.max));
+  PetscCall(EqmMapAddCount(map, "prepared_mesh.folds", found->distortion.folds));
+  if (!keeps_angles) PetscCall(EqmMapSetEnergies(map, map->energy_initial, map->distortion.energy));
+  if (folds == 0 || (map->status != EQM_STATUS_CONVERGED && map->status != EQM_STATUS_NOT_CONVERGED))
+    PetscFunctionReturn(0);
+  map->status = EQM_STATUS_FOLDS;
+  PetscCall(PetscSNPrintf(map->message, sizeof(map->message),
+                          "%" PetscInt64_FMT " %s of the file are folded or flat in the map, %" PetscInt64_FMT
+                          " of the prepared mesh: where cells were split, their parts are mapped well and they are not",
+                          folds, map->soup->cell_size == 3 ? "triangles" : "tetrahedra", found->distortion.folds));
+  PetscFunctionReturn(0);
+}
+
+/* EqmIntakeMeasureGiven - measure a map on the cells of the file, where a prepared mesh has been mapped in their place.
+
+   Collective. found - the map of intake->mapped; map - as EqmIntakeTakeMap made it of `found`: gets distortion, ratios,
+   energy and status of the file's mesh; those of the prepared mesh become figures `prepared_mesh`. Where nothing was
+   prepared, nothing happens. */
+PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, EqmMap found, EqmMap map)
+{
+  const EqmSoup given = intake->given;
+  MappedCells cells;
+  PetscInt *mark;
+  PetscReal *x;
+  EqmMap measured;
+  EqmMesh mesh;
+
+  PetscFunctionBegin;
+  if (map == found) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(given->cell_end - given->cell_start, &mark));
+  PetscCall(MarkCells(intake, mark));
+  PetscCall(CollectMapped(given, mark, &cells));
+  PetscCall(EqmMeshCreate(cells.soup, ledger, &mesh));
+  PetscCall(EqmMapCreate(cells.soup, map->dim, &measured));
+  PetscCall(PetscMalloc1(map->dim * mesh->num_local, &x));
+  PetscCall(EqmMeshVerticesFromInput(mesh, cells.soup, map->dim, map->coordinates, x));
+  PetscCall(EqmMapMeasure(measured, mesh, x));
+  PetscCall(TakeMeasures(measured, &cells, map));
+  PetscCall(Judge(found, intake->target, map));
+  PetscCall(PetscFree(x));
+  PetscCall(EqmMapDestroy(&measured));
+  PetscCall(EqmMeshDestroy(&mesh));
+  PetscCall(EqmSoupDestroy(&cells.soup));
+  PetscCall(PetscFree(cells.cell));
+  PetscCall(PetscFree(mark));
+  PetscFunctionReturn(0);
+}
