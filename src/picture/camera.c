@@ -1,5 +1,5 @@
-/* Where the eye stands. */
-#include "picture.h"
+/* Where the camera stands. */
+#include "picture/picture.h"
 #include <math.h>
 
 static double Dot(const double a[3], const double b[3])
@@ -21,15 +21,12 @@ static void Normalise(double a[3])
   for (int d = 0; d < 3; d++) a[d] = length > 0.0 ? a[d] / length : 0.0;
 }
 
-/* The eye above the plane, x to the right and y up. Not collective. */
 EqmCamera EqmCameraFlat(void)
 {
   const EqmCamera camera = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 1.03};
   return camera;
 }
 
-/* An eye that sees `pole` upwards and starts from the side of `front`, then walks `azimuth` degrees around the pole and
-   rises by `elevation` degrees. Not collective. */
 EqmCamera EqmCameraTurned(const double pole[3], const double front[3], double azimuth, double elevation)
 {
   const double a = azimuth * PETSC_PI / 180.0, e = elevation * PETSC_PI / 180.0;
@@ -90,42 +87,79 @@ static PetscBool IsLong(const EqmFaces *faces, const PetscReal *points)
   return (PetscBool)(high[2] - low[2] > 1.4 * (high[0] - low[0]));
 }
 
-/* A view in which most meshes look well. Scans stand on y and look along z. A surface that is open on one side, as a
-   scan cut at its neck, stands on its opening; a relief, whose normals all lean to one side, is seen from there. Not
-   collective. */
-EqmCamera EqmCameraGuess(const EqmFaces *faces, const PetscReal *points)
+/* Which way is up, where the front is, and from where a mesh is seen well. */
+typedef struct {
+  double pole[3], front[3], azimuth, elevation;
+} Stand;
+
+/* Scans stand on y and look along z. A surface that is open on one side, as a scan cut at its neck, stands on its
+   opening; a relief, whose normals all lean to one side, is seen from there. */
+static Stand Guess(const EqmFaces *faces, const PetscReal *points)
 {
-  double mean[3], pole[3] = {0, 1, 0}, front[3] = {0, 0, 1};
-  EqmCamera camera;
-  double bias;
+  Stand stand = {{0, 1, 0}, {0, 0, 1}, 25.0, 12.0};
+  double mean[3], bias;
   int axis;
 
   MeanNormal(faces, points, mean);
   bias = sqrt(Dot(mean, mean));
   axis = LargestComponent(mean);
-  if (bias > 0.4) {
-    const double sign = mean[axis] > 0 ? 1.0 : -1.0;
-    pole[1] = 0.0;
-    pole[axis] = sign;
-    front[2] = 0.0;
-    front[axis == 1 ? 2 : 1] = axis == 2 ? -1.0 : 1.0;
-    camera = EqmCameraTurned(pole, front, 20.0, 50.0);
-  } else {
-    if (bias > 0.01 && axis != 1) {
-      pole[1] = 0.0;
-      pole[axis] = mean[axis] > 0 ? 1.0 : -1.0;
-      front[2] = 0.0;
-      front[axis == 0 ? 2 : 1] = axis == 0 ? 1.0 : -1.0;
-    } else if (bias > 0.01 && mean[1] < 0) {
-      pole[1] = -1.0;
-    }
-    camera = EqmCameraTurned(pole, front, pole[1] > 0.0 && IsLong(faces, points) ? 65.0 : 25.0, 12.0);
+  if (bias > 0.4 || (bias > 0.01 && axis != 1)) {
+    stand.pole[1] = 0.0;
+    stand.pole[axis] = mean[axis] > 0 ? 1.0 : -1.0;
+    stand.front[2] = 0.0;
+    if (bias > 0.4)
+      stand.front[axis == 1 ? 2 : 1] = axis == 2 ? -1.0 : 1.0;
+    else
+      stand.front[axis == 0 ? 2 : 1] = axis == 0 ? 1.0 : -1.0;
+  } else if (bias > 0.01 && mean[1] < 0) {
+    stand.pole[1] = -1.0;
   }
+  if (bias > 0.4) {
+    stand.azimuth = 20.0;
+    stand.elevation = 50.0;
+  } else if (stand.pole[1] > 0.0 && IsLong(faces, points)) {
+    stand.azimuth = 65.0;
+  }
+  return stand;
+}
+
+/* The axis that the user wants up. */
+static void SetUp(const char *up, Stand *stand)
+{
+  const char *const letter = up[0] == '-' ? up + 1 : up;
+  const int axis = *letter - 'x';
+
+  for (int d = 0; d < 3; d++) stand->pole[d] = stand->front[d] = 0.0;
+  stand->pole[axis] = up[0] == '-' ? -1.0 : 1.0;
+  stand->front[axis == 2 ? 1 : 2] = axis == 2 ? -1.0 : 1.0; /* with z up one looks along y */
+}
+
+EqmCamera EqmCameraChoose(const EqmFaces *faces, const PetscReal *points, const EqmReportOptions *options)
+{
+  Stand stand = Guess(faces, points);
+  EqmCamera camera;
+
+  if (options->up[0]) SetUp(options->up, &stand);
+  if (options->has_eye) {
+    stand.azimuth = options->azimuth;
+    stand.elevation = options->elevation;
+  }
+  camera = EqmCameraTurned(stand.pole, stand.front, stand.azimuth, stand.elevation);
   EqmCameraFit(&camera, faces, points);
   return camera;
 }
 
-/* Aim and zoom so that all faces are just seen. Not collective. */
+void EqmCameraProject(const EqmCamera *camera, double size, const double point[3], double projected[3])
+{
+  const double scale = 0.5 * size / camera->half_width;
+  double offset[3];
+
+  for (int d = 0; d < 3; d++) offset[d] = point[d] - camera->center[d];
+  projected[0] = 0.5 * size + scale * Dot(offset, camera->right);
+  projected[1] = 0.5 * size - scale * Dot(offset, camera->up);
+  projected[2] = scale * Dot(offset, camera->toward);
+}
+
 void EqmCameraFit(EqmCamera *camera, const EqmFaces *faces, const PetscReal *points)
 {
   const double *axis[3] = {camera->right, camera->up, camera->toward};

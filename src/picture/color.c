@@ -1,5 +1,5 @@
-/* Colours: a diverging scale for ratios, patterns for maps. Both stay apart for colour-blind eyes. */
-#include "picture.h"
+/* Colours: scales for values, patterns for maps. All stay apart for colour-blind eyes. */
+#include "picture/picture.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,48 +10,93 @@ static const double diverging[][3] = {{0.020, 0.188, 0.380}, {0.130, 0.400, 0.67
                                       {0.698, 0.094, 0.168}, {0.404, 0.000, 0.122}};
 enum { NUM_STOPS = sizeof(diverging) / sizeof(diverging[0]) };
 
+/* From near-white (kept) to a dark green, in even steps of lightness; no green or magenta in the other scale. */
+static const double sequential[][3] = {{0.969, 0.965, 0.957}, {0.827, 0.913, 0.855}, {0.647, 0.836, 0.741},
+                                       {0.443, 0.745, 0.647}, {0.245, 0.643, 0.580}, {0.106, 0.533, 0.522},
+                                       {0.035, 0.427, 0.455}, {0.016, 0.325, 0.376}, {0.008, 0.228, 0.290},
+                                       {0.004, 0.145, 0.208}, {0.000, 0.075, 0.133}};
+
 static int CompareDoubles(const void *a, const void *b)
 {
   const double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
 
-/* A scale on which all but about a twentieth of the ratios have a colour of their own. Not collective. */
-EqmColorScale EqmColorScaleOf(const PetscReal *ratio, PetscInt count)
+/* The smallest limit that holds a value: 1, 2 or 5 times a power of ten. */
+static double RoundUp(double value)
 {
-  static const double limits[] = {1.0001, 1.0002, 1.0005, 1.001, 1.002, 1.005, 1.01, 1.02, 1.05,
-                                  1.1,    1.2,    1.5,    2,     4,     8,     16,   64,   256};
-  enum { NUM_LIMITS = sizeof(limits) / sizeof(limits[0]), SAMPLES = 4096 };
+  const double power = pow(10.0, floor(log10(value)));
+
+  if (!(value > 0.0)) return 1.0;
+  if (value <= power) return power;
+  if (value <= 2 * power) return 2 * power;
+  return value <= 5 * power ? 5 * power : 10 * power;
+}
+
+/* The deviation up to which nineteen twentieths of the values lie: of their logarithms, or of distances themselves. */
+static double LargeDeviation(EqmScaleKind kind, const PetscReal *values, PetscInt count)
+{
+  enum { SAMPLES = 4096 };
   const PetscInt step = PetscMax(1, count / SAMPLES);
-  EqmColorScale scale = {limits[0]};
   double deviation[2 * SAMPLES];
-  int taken = 0, k = 0;
+  int taken = 0;
 
   for (PetscInt j = 0; j < count && taken < 2 * SAMPLES; j += step) {
-    if (ratio[j] > 0.0) deviation[taken++] = fabs(log(ratio[j]));
+    if (values[j] > 0.0) deviation[taken++] = kind == EQM_SCALE_DISTANCE ? values[j] : fabs(log(values[j]));
   }
-  if (taken == 0) return scale;
   qsort(deviation, (size_t)taken, sizeof(deviation[0]), CompareDoubles);
-  while (k + 1 < NUM_LIMITS && log(limits[k]) < deviation[(int)(0.95 * (taken - 1))]) k++;
-  scale.limit = limits[k];
+  return taken ? deviation[(int)(0.95 * (taken - 1))] : 0.0;
+}
+
+EqmColorScale EqmColorScaleOf(EqmScaleKind kind, const PetscReal *values, PetscInt count)
+{
+  static const double limits[] = {1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2, 4, 8, 16, 64, 256};
+  enum { NUM_LIMITS = sizeof(limits) / sizeof(limits[0]) };
+  const double deviation = LargeDeviation(kind, values, count);
+  EqmColorScale scale = {kind, limits[0]};
+
+  if (kind == EQM_SCALE_DISTANCE) {
+    scale.limit = RoundUp(deviation);
+    return scale;
+  }
+  for (int k = 0; k < NUM_LIMITS; k++) {
+    scale.limit = limits[k];
+    if (log(limits[k]) >= deviation) break;
+  }
   return scale;
 }
 
-/* The colour of a ratio; magenta for folded cells. Not collective. */
-void EqmColorOfRatio(EqmColorScale scale, double ratio, double rgb[3])
+EqmColorScale EqmColorScaleJoin(EqmColorScale a, EqmColorScale b)
 {
+  return a.limit >= b.limit ? a : b;
+}
+
+double EqmColorScaleValue(EqmColorScale scale, double place)
+{
+  if (scale.kind == EQM_SCALE_RATIO) return pow(scale.limit, 2.0 * place - 1.0);
+  return scale.kind == EQM_SCALE_STRETCH ? pow(scale.limit, place) : scale.limit * place;
+}
+
+/* Where a value lies on the scale, 0 ... 1 for those that have a colour of their own. */
+static double PlaceOf(EqmColorScale scale, double value)
+{
+  if (scale.kind == EQM_SCALE_RATIO) return 0.5 + 0.5 * log(value) / log(scale.limit);
+  return scale.kind == EQM_SCALE_STRETCH ? log(value) / log(scale.limit) : value / scale.limit;
+}
+
+void EqmColorOf(EqmColorScale scale, double value, double rgb[3])
+{
+  const double(*const stops)[3] = scale.kind == EQM_SCALE_RATIO ? diverging : sequential;
   double place;
   int stop;
 
-  if (!(ratio > 0.0)) {
+  if (scale.kind == EQM_SCALE_RATIO && !(value > 0.0)) {
     rgb[0] = 0.9, rgb[1] = 0.0, rgb[2] = 0.9;
     return;
   }
-  place = 0.5 + 0.5 * log(ratio) / log(scale.limit);
-  place = fmin(fmax(place, 0.0), 1.0) * (NUM_STOPS - 1);
+  place = fmin(fmax(PlaceOf(scale, value), 0.0), 1.0) * (NUM_STOPS - 1);
   stop = (int)fmin(floor(place), NUM_STOPS - 2);
-  for (int c = 0; c < 3; c++)
-    rgb[c] = diverging[stop][c] + (place - stop) * (diverging[stop + 1][c] - diverging[stop][c]);
+  for (int c = 0; c < 3; c++) rgb[c] = stops[stop][c] + (place - stop) * (stops[stop + 1][c] - stops[stop][c]);
 }
 
 static int Modulo2(double x)
@@ -88,7 +133,6 @@ static PetscBool OnBoard(EqmPattern pattern, const double image[3], double *alon
   return (PetscBool)(floor(*along) == 24.0);
 }
 
-/* The colour of a point of the image under a checkerboard. Not collective. */
 void EqmColorOfPattern(EqmPattern pattern, const double image[3], double rgb[3])
 {
   static const double tones[2][3] = {{0.957, 0.945, 0.910}, {0.227, 0.404, 0.545}};

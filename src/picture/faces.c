@@ -1,5 +1,5 @@
-/* Which triangles are drawn: a surface's own, or the skin of a solid or of a part of it. */
-#include "picture.h"
+/* Which triangles are drawn: a surface's own, or the boundary of a solid or of a part of it. */
+#include "picture/picture.h"
 #include <math.h>
 
 static PetscErrorCode AllocateFaces(PetscInt count, EqmFaces *faces)
@@ -61,7 +61,7 @@ static PetscErrorCode BucketSides(const EqmResult *result, const PetscBool *keep
   PetscFunctionReturn(0);
 }
 
-/* The sides without a partner are the skin. */
+/* The sides without a partner are the boundary. */
 static PetscErrorCode CollectSingles(const EqmResult *result, const PetscInt *start, const PetscInt *side,
                                      PetscSegBuffer singles)
 {
@@ -82,8 +82,8 @@ static PetscErrorCode CollectSingles(const EqmResult *result, const PetscInt *st
   PetscFunctionReturn(0);
 }
 
-/* The skin of the kept tetrahedra. */
-static PetscErrorCode MakeSkin(const EqmResult *result, const PetscBool *keep, EqmFaces *faces)
+/* The boundary of the kept tetrahedra. */
+static PetscErrorCode MakeBoundary(const EqmResult *result, const PetscBool *keep, EqmFaces *faces)
 {
   PetscInt *start, *side;
   PetscSegBuffer singles;
@@ -107,7 +107,6 @@ static PetscErrorCode MakeSkin(const EqmResult *result, const PetscBool *keep, E
   PetscFunctionReturn(0);
 }
 
-/* The triangles of a surface, or the boundary triangles of a solid. Not collective. */
 PetscErrorCode EqmFacesOfSurface(const EqmResult *result, EqmFaces *faces)
 {
   PetscBool *keep;
@@ -121,30 +120,44 @@ PetscErrorCode EqmFacesOfSurface(const EqmResult *result, EqmFaces *faces)
   }
   PetscCall(PetscMalloc1(result->num_cells, &keep));
   for (PetscInt c = 0; c < result->num_cells; c++) keep[c] = PETSC_TRUE;
-  PetscCall(MakeSkin(result, keep, faces));
+  PetscCall(MakeBoundary(result, keep, faces));
   PetscCall(PetscFree(keep));
   PetscFunctionReturn(0);
 }
 
-/* The skin of the tetrahedra whose images lie in the half of the ball away from `direction`: the ball cut open. Not
-   collective. */
-PetscErrorCode EqmFacesOfCut(const EqmResult *result, const PetscReal direction[3], EqmFaces *faces)
+/* The middle of the box around all vertices. */
+static void Middle(const EqmResult *result, const PetscReal *points, PetscReal middle[3])
 {
+  for (int d = 0; d < 3; d++) {
+    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
+    for (PetscInt k = 0; k < 4 * result->num_cells; k++) {
+      low = PetscMin(low, points[3 * result->cells[k] + d]);
+      high = PetscMax(high, points[3 * result->cells[k] + d]);
+    }
+    middle[d] = .5 * (low + high);
+  }
+}
+
+PetscErrorCode EqmFacesOfCut(const EqmResult *result, const PetscReal *points, const PetscReal direction[3],
+                             EqmFaces *faces)
+{
+  PetscReal middle[3];
   PetscBool *keep;
 
   PetscFunctionBegin;
+  Middle(result, points, middle);
   PetscCall(PetscMalloc1(result->num_cells, &keep));
   for (PetscInt c = 0; c < result->num_cells; c++) {
     PetscReal height = 0.0;
-    for (int k = 0; k < 12; k++) height += direction[k % 3] * result->images[3 * result->cells[4 * c + k / 3] + k % 3];
+    for (int k = 0; k < 12; k++)
+      height += direction[k % 3] * (points[3 * result->cells[4 * c + k / 3] + k % 3] - middle[k % 3]);
     keep[c] = (PetscBool)(height <= 0.0);
   }
-  PetscCall(MakeSkin(result, keep, faces));
+  PetscCall(MakeBoundary(result, keep, faces));
   PetscCall(PetscFree(keep));
   PetscFunctionReturn(0);
 }
 
-/* Free the arrays. Not collective. */
 PetscErrorCode EqmFacesReset(EqmFaces *faces)
 {
   PetscFunctionBegin;
@@ -165,7 +178,6 @@ static void FaceNormal(const PetscInt vertices[3], const PetscReal *points, doub
   normal[2] = u[0] * v[1] - u[1] * v[0];
 }
 
-/* Unit normals per vertex, 3 floats each, weighted by area; to be freed with PetscFree. Not collective. */
 PetscErrorCode EqmFacesNormals(const EqmFaces *faces, const PetscReal *points, PetscInt num_points, float **normals)
 {
   PetscFunctionBegin;

@@ -1,8 +1,10 @@
 /* One self-contained page: the picture, the numbers, where it came from, the history. */
 #ifdef EQM_HAVE_CAIRO
-#include "html.h"
+#include "picture/html.h"
+#include "picture/figures.h"
 #include "picture/surface.h"
-#include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 /* Bytes to base64, three at a time; what is left over waits for the next piece. */
 typedef struct {
@@ -58,109 +60,119 @@ static void PrintText(EqmAtomicFile *file, const char *text)
   }
 }
 
-static void PrintTextRow(EqmAtomicFile *file, const char *name, const char *value)
+static void PrintCell(EqmAtomicFile *file, const char *tag, const char *value)
 {
-  EqmAtomicPrint(file, "<tr><th>%s</th><td>", name);
+  EqmAtomicPrint(file, "<%s>", tag);
   PrintText(file, value);
-  EqmAtomicPrint(file, "</td></tr>\n");
+  EqmAtomicPrint(file, "</%s>", tag);
 }
 
-static void PrintNumberRow(EqmAtomicFile *file, const char *name, PetscReal value)
+static const char *BaseName(const char *path)
 {
-  EqmAtomicPrint(file, "<tr><th>%s</th><td>", name);
-  if (isfinite(value))
-    EqmAtomicPrintReals(file, 1, &value, ' ');
-  else
-    EqmAtomicPrint(file, "–");
-  EqmAtomicPrint(file, "</td></tr>\n");
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
 }
 
-static void PrintHead(EqmAtomicFile *file, const EqmResult *result)
+static void PrintHead(EqmAtomicFile *file, const EqmPage *page)
 {
   EqmAtomicPrint(file, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
                        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>");
-  PrintText(file, result->mesh_file);
+  for (PetscInt k = 0; k < page->num; k++) {
+    if (k) EqmAtomicPrint(file, ", ");
+    PrintText(file, BaseName(page->results[k].mesh_file));
+  }
   EqmAtomicPrint(
-      file, "</title>\n<style>\n"
-            "body{font:15px/1.5 system-ui,sans-serif;color:#212428;max-width:1600px;margin:1rem auto;padding:0 1rem}\n"
-            "img{width:100%%;height:auto}\ntable{border-collapse:collapse;margin:1rem 0}\n"
-            "th{text-align:left;font-weight:400;color:#6b7078;padding:.2rem 1.5rem .2rem 0;vertical-align:top}\n"
-            "td{padding:.2rem 0;font-variant-numeric:tabular-nums;overflow-wrap:anywhere}\ntr{border-bottom:1px solid "
-            "#e2e4e6}\n"
-            "details td{padding-right:1.5rem}\n</style></head><body>\n");
+      file, "</title>\n<style>\n%s</style></head><body>\n",
+      "body{font:15px/1.5 system-ui,sans-serif;color:#212428;max-width:1600px;margin:1rem auto;padding:0 1rem}\n"
+      "img{width:100%;height:auto}\ntable{border-collapse:collapse;margin:1rem 0}\n"
+      "th{text-align:left;font-weight:400;color:#6b7078;padding:.2rem 1.5rem .2rem 0;vertical-align:top}\n"
+      "td{padding:.2rem 1.5rem .2rem 0;font-variant-numeric:tabular-nums;overflow-wrap:anywhere}\n"
+      "tr{border-bottom:1px solid #e2e4e6}\n");
 }
 
-static void PrintNumbers(EqmAtomicFile *file, const EqmResult *result)
+/* The result's number, where there are several. */
+static void PrintNumbering(EqmAtomicFile *file, const EqmPage *page)
 {
-  const EqmStatistics *ratio = &result->ratio_statistics;
+  if (page->num == 1) return;
+  EqmAtomicPrint(file, "<tr><th></th>");
+  for (PetscInt k = 0; k < page->num; k++) EqmAtomicPrint(file, "<td><b>%d</b></td>", (int)k + 1);
+  EqmAtomicPrint(file, "</tr>\n");
+}
 
-  EqmAtomicPrint(file, "<h2>Numbers</h2>\n<table>\n");
-  PrintNumberRow(file, "vertices", (PetscReal)result->num_vertices);
-  PrintNumberRow(file, result->cell_size == 3 ? "triangles" : "tetrahedra", (PetscReal)result->num_cells);
-  PrintNumberRow(file, "energy at the start", result->energy_initial);
-  PrintNumberRow(file, "energy at the end", result->energy_final);
-  PrintNumberRow(file, "ratio, mean", ratio->mean);
-  PrintNumberRow(file, "ratio, standard deviation", ratio->sd);
-  PrintNumberRow(file, "ratio, smallest", ratio->min);
-  PrintNumberRow(file, "ratio, 25 %% of cells below", ratio->p25);
-  PrintNumberRow(file, "ratio, 50 %% of cells below", ratio->p50);
-  PrintNumberRow(file, "ratio, 75 %% of cells below", ratio->p75);
-  PrintNumberRow(file, "ratio, 95 %% of cells below", ratio->p95);
-  PrintNumberRow(file, "ratio, largest", ratio->max);
-  if (result->cell_size == 3) PrintNumberRow(file, "angle error, mean, degrees", result->angle_mean);
-  if (result->cell_size == 3) PrintNumberRow(file, "angle error, median, degrees", result->angle_median);
-  PrintNumberRow(file, "folds", (PetscReal)result->folds);
-  PrintNumberRow(file, "iterations", (PetscReal)result->iterations);
-  PrintNumberRow(file, "seconds", result->seconds);
+static void PrintFigures(EqmAtomicFile *file, const EqmPage *page)
+{
+  EqmAtomicPrint(file, "<h2>Figures</h2>\n<table>\n");
+  PrintNumbering(file, page);
+  for (int f = 0; f < EqmNumFigures(); f++) {
+    EqmAtomicPrint(file, "<tr>");
+    PrintCell(file, "th", EqmFigureName(page->results, f));
+    for (PetscInt k = 0; k < page->num; k++) {
+      char text[EQM_FIGURE_TEXT_LENGTH];
+      EqmFigureText(&page->results[k], f, text, sizeof(text));
+      PrintCell(file, "td", text[0] ? text : "–");
+    }
+    EqmAtomicPrint(file, "</tr>\n");
+  }
   EqmAtomicPrint(file, "</table>\n");
 }
 
-static void PrintProvenance(EqmAtomicFile *file, const EqmResult *result)
+static void PrintProvenance(EqmAtomicFile *file, const EqmPage *page)
 {
+  static const struct {
+    const char *name;
+    size_t offset;
+  } rows[] = {{"result", offsetof(EqmResult, file)},
+              {"mesh", offsetof(EqmResult, mesh_file)},
+              {"registered with", offsetof(EqmResult, other_file)},
+              {"command", offsetof(EqmResult, command)},
+              {"method", offsetof(EqmResult, method)},
+              {"status", offsetof(EqmResult, status)},
+              {"message", offsetof(EqmResult, message)},
+              {"options", offsetof(EqmResult, options)},
+              {"equimap", offsetof(EqmResult, version)},
+              {"commit", offsetof(EqmResult, commit)},
+              {"date", offsetof(EqmResult, date)}};
+
   EqmAtomicPrint(file, "<h2>Where it came from</h2>\n<table>\n");
-  PrintTextRow(file, "mesh", result->mesh_file);
-  if (result->other_file[0]) PrintTextRow(file, "registered with", result->other_file);
-  PrintTextRow(file, "command", result->command);
-  PrintTextRow(file, "method", result->method);
-  PrintTextRow(file, "status", result->status);
-  PrintTextRow(file, "message", result->message);
-  PrintTextRow(file, "options", result->options);
-  PrintNumberRow(file, "ranks", (PetscReal)result->ranks);
-  PrintNumberRow(file, "threads", (PetscReal)result->threads);
-  PrintTextRow(file, "equimap", result->version);
-  PrintTextRow(file, "commit", result->commit);
-  PrintTextRow(file, "date", result->date);
+  PrintNumbering(file, page);
+  for (size_t r = 0; r < sizeof(rows) / sizeof(rows[0]); r++) {
+    PetscBool any = PETSC_FALSE;
+    for (PetscInt k = 0; k < page->num; k++)
+      any = (PetscBool)(any || *((const char *)&page->results[k] + rows[r].offset));
+    if (!any) continue;
+    EqmAtomicPrint(file, "<tr>");
+    PrintCell(file, "th", rows[r].name);
+    for (PetscInt k = 0; k < page->num; k++) PrintCell(file, "td", (const char *)&page->results[k] + rows[r].offset);
+    EqmAtomicPrint(file, "</tr>\n");
+  }
   EqmAtomicPrint(file, "</table>\n");
 }
 
 static void PrintHistory(EqmAtomicFile *file, const EqmResult *result)
 {
   if (result->num_history == 0) return;
-  EqmAtomicPrint(
-      file,
-      "<details><summary>History</summary>\n<table>\n<tr><td>iteration</td><td>energy</td><td>seconds</td></tr>\n");
-  for (PetscInt k = 0; k < result->num_history; k++) {
-    EqmAtomicPrint(file, "<tr><td>%.0f</td><td>", result->iteration[k]);
-    EqmAtomicPrintReals(file, 1, &result->energy[k], ' ');
-    EqmAtomicPrint(file, "</td><td>%.3f</td></tr>\n", result->elapsed[k]);
-  }
+  EqmAtomicPrint(file, "<details><summary>History of ");
+  PrintText(file, BaseName(result->file));
+  EqmAtomicPrint(file, "</summary>\n<table>\n<tr><td>iteration</td><td>energy</td><td>seconds</td></tr>\n");
+  for (PetscInt k = 0; k < result->num_history; k++)
+    EqmAtomicPrint(file, "<tr><td>%.0f</td><td>%.7g</td><td>%.3f</td></tr>\n", result->iteration[k], result->energy[k],
+                   result->elapsed[k]);
   EqmAtomicPrint(file, "</table></details>\n");
 }
 
-/* Write the report for a browser, the picture inside. Not collective. */
-PetscErrorCode EqmWriteHtml(const EqmResult *result, int width, EqmAtomicFile *file, cairo_status_t *status)
+PetscErrorCode EqmWriteHtml(const EqmPage *page, int width, EqmAtomicFile *file, cairo_status_t *status)
 {
   Encoder encoder = {file, {0, 0, 0}, 0};
 
   PetscFunctionBegin;
-  PrintHead(file, result);
+  PrintHead(file, page);
   EqmAtomicPrint(file, "<img alt=\"the surface, its image and the convergence\" src=\"data:image/png;base64,");
-  PetscCall(EqmPageToPng(result, width, Encode, &encoder, status));
+  PetscCall(EqmPageToPng(page, width, Encode, &encoder, status));
   Flush(&encoder);
   EqmAtomicPrint(file, "\">\n");
-  PrintNumbers(file, result);
-  PrintProvenance(file, result);
-  PrintHistory(file, result);
+  PrintFigures(file, page);
+  PrintProvenance(file, page);
+  for (PetscInt k = 0; k < page->num; k++) PrintHistory(file, &page->results[k]);
   EqmAtomicPrint(file, "</body></html>\n");
   PetscFunctionReturn(0);
 }

@@ -4,9 +4,9 @@
 
 #include <cairo.h>
 #include "base/atomicfile.h"
-#include "picture.h"
+#include "picture/picture.h"
 
-PETSC_INTERN PetscErrorCode EqmWriteHtml(const EqmResult *result, int width, EqmAtomicFile *file,
-                                         cairo_status_t *status);
+/* Write the report, its picture inside; what cairo says of the picture is in `status`. Not collective. */
+PETSC_INTERN PetscErrorCode EqmWriteHtml(const EqmPage *page, int width, EqmAtomicFile *file, cairo_status_t *status);
 
 #endif

@@ -1,10 +1,8 @@
 /* A result file, read back to be looked at. */
-#include "picture.h"
+#include "picture/picture.h"
 #include "h5/h5.h"
 #include "store/store.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* All rows of an array, which must have `width` entries per row (0: one-dimensional). */
 static PetscErrorCode LoadReals(EqmH5 h5, const char *path, PetscInt64 width, PetscInt *total, PetscReal **values)
@@ -23,7 +21,7 @@ static PetscErrorCode LoadReals(EqmH5 h5, const char *path, PetscInt64 width, Pe
   PetscFunctionReturn(0);
 }
 
-/* Cells name vertices that exist: a damaged file must not lead the painter astray. */
+/* A damaged file must not name vertices that do not exist. */
 static PetscErrorCode LoadCells(EqmH5 h5, EqmResult *result)
 {
   PetscErrorCode error;
@@ -86,13 +84,14 @@ static PetscErrorCode LoadImages(EqmH5 h5, EqmResult *result)
 
 static PetscErrorCode LoadHistory(EqmH5 h5, EqmResult *result)
 {
-  static const char *const paths[] = {"/history/iteration", "/history/energy", "/history/seconds"};
-  PetscReal **const arrays[] = {&result->iteration, &result->energy, &result->elapsed};
+  static const char *const paths[] = {"/history/iteration", "/history/energy", "/history/seconds",
+                                      "/history/gradient_norm"};
+  PetscReal **const arrays[] = {&result->iteration, &result->energy, &result->elapsed, &result->gradient};
   PetscInt rows;
   PetscBool has;
 
   PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < 4; k++) {
     PetscCall(EqmH5HasDataset(h5, paths[k], &has));
     if (!has) PetscFunctionReturn(0); /* a map that was measured, not made here */
     PetscCall(LoadReals(h5, paths[k], 0, &rows, arrays[k]));
@@ -124,45 +123,55 @@ static PetscErrorCode LoadAttributes(EqmH5 h5, EqmResult *result)
   PetscCall(EqmH5GetReal(h5, "energy_final", NAN, &result->energy_final));
   PetscCall(EqmH5GetReal(h5, "angle_error_mean", NAN, &result->angle_mean));
   PetscCall(EqmH5GetReal(h5, "angle_error_median", NAN, &result->angle_median));
+  PetscCall(EqmH5GetReal(h5, "quasiconformal_mean", NAN, &result->quasi_mean));
+  PetscCall(EqmH5GetReal(h5, "quasiconformal_median", NAN, &result->quasi_median));
+  PetscCall(EqmH5GetReal(h5, "quasiconformal_max", NAN, &result->quasi_max));
   PetscCall(EqmH5GetReal(h5, "seconds_total", NAN, &result->seconds));
   PetscFunctionReturn(0);
 }
 
-static int CompareReals(const void *a, const void *b)
+/* Per cell, if there: what becomes of angles, and the density, 1 where there is none. */
+static PetscErrorCode LoadCellValues(EqmH5 h5, EqmResult *result)
 {
-  const PetscReal x = *(const PetscReal *)a, y = *(const PetscReal *)b;
-  return (x > y) - (x < y);
-}
-
-static PetscErrorCode ComputeStatistics(EqmResult *result)
-{
-  EqmStatistics *statistics = &result->ratio_statistics;
-  const PetscInt n = result->num_cells;
-  PetscReal *sorted, sum = 0.0, squares = 0.0;
+  PetscInt count;
+  PetscBool has;
 
   PetscFunctionBegin;
-  if (n == 0) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(n, &sorted));
-  PetscCall(PetscArraycpy(sorted, result->ratio, n));
-  qsort(sorted, (size_t)n, sizeof(*sorted), CompareReals);
-  for (PetscInt j = 0; j < n; j++) sum += sorted[j];
-  statistics->mean = sum / (PetscReal)n;
-  for (PetscInt j = 0; j < n; j++) squares += PetscSqr(sorted[j] - statistics->mean);
-  statistics->sd = PetscSqrtReal(squares / (PetscReal)n);
-  statistics->min = sorted[0];
-  statistics->max = sorted[n - 1];
-  statistics->p25 = sorted[(PetscInt)(0.25 * (n - 1))];
-  statistics->p50 = sorted[(PetscInt)(0.50 * (n - 1))];
-  statistics->p75 = sorted[(PetscInt)(0.75 * (n - 1))];
-  statistics->p95 = sorted[(PetscInt)(0.95 * (n - 1))];
-  PetscCall(PetscFree(sorted));
+  PetscCall(LoadReals(h5, "/cell/ratio", 0, &count, &result->ratio));
+  if (count != result->num_cells)
+    EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': /cell/ratio does not fit the mesh", h5->name);
+  PetscCall(EqmH5HasDataset(h5, "/cell/quasi_conformal", &has));
+  if (has) PetscCall(LoadReals(h5, "/cell/quasi_conformal", 0, &count, &result->quasi_conformal));
+  if (has && count != result->num_cells)
+    EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': /cell/quasi_conformal does not fit the mesh", h5->name);
+  PetscCall(EqmH5HasDataset(h5, "/cell/density", &has));
+  if (has) {
+    PetscCall(LoadReals(h5, "/cell/density", 0, &count, &result->weight));
+    if (count != result->num_cells)
+      EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': /cell/density does not fit the mesh", h5->name);
+  } else {
+    PetscCall(PetscMalloc1(result->num_cells, &result->weight));
+    for (PetscInt c = 0; c < result->num_cells; c++) result->weight[c] = 1.;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LoadAngles(EqmH5 h5, EqmResult *result)
+{
+  const EqmSlab slab = {EQM_NUM_ANGLE_BINS, 0, EQM_NUM_ANGLE_BINS, 0};
+  PetscInt64 rows = 0, width;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5HasDataset(h5, "/histogram/angle_error", &result->has_angles));
+  if (result->has_angles) PetscCall(EqmH5GetShape(h5, "/histogram/angle_error", &rows, &width));
+  result->has_angles = (PetscBool)(rows == EQM_NUM_ANGLE_BINS);
+  if (result->has_angles) PetscCall(EqmH5ReadIntegers(h5, "/histogram/angle_error", slab, result->angle_histogram));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Fill(EqmH5 h5, EqmResult *result)
 {
   PetscInt64 complete;
-  PetscInt count;
   PetscBool has;
 
   PetscFunctionBegin;
@@ -178,15 +187,12 @@ static PetscErrorCode Fill(EqmH5 h5, EqmResult *result)
   PetscCall(LoadReals(h5, "/mesh/vertices", 3, &result->num_vertices, &result->vertices));
   PetscCall(LoadCells(h5, result));
   PetscCall(LoadImages(h5, result));
-  PetscCall(LoadReals(h5, "/cell/ratio", 0, &count, &result->ratio));
-  if (count != result->num_cells)
-    EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': /cell/ratio does not fit the mesh", h5->name);
+  PetscCall(LoadCellValues(h5, result));
+  PetscCall(LoadAngles(h5, result));
   PetscCall(LoadHistory(h5, result));
-  PetscCall(ComputeStatistics(result));
   PetscFunctionReturn(0);
 }
 
-/* Read a result file whole. Errors: EQM_ERR_IO (not a result, damaged), and nothing is left to free. Not collective. */
 PetscErrorCode EqmResultLoad(const char *file, EqmResult *result)
 {
   PetscErrorCode error;
@@ -195,25 +201,30 @@ PetscErrorCode EqmResultLoad(const char *file, EqmResult *result)
   PetscFunctionBegin;
   PetscCall(PetscMemzero(result, sizeof(*result)));
   PetscCall(EqmH5Open(PETSC_COMM_SELF, file, &h5));
-  error = Fill(h5, result);
+  error = PetscStrncpy(result->file, file, sizeof(result->file));
+  if (!error) error = Fill(h5, result);
   PetscCall(EqmH5Close(&h5));
+  if (!error) error = EqmResultEvaluate(result);
   if (error) PetscCall(EqmResultReset(result));
   PetscCall(error);
   PetscFunctionReturn(0);
 }
 
-/* Free what EqmResultLoad allocated. Not collective. */
 PetscErrorCode EqmResultReset(EqmResult *result)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree(result->vertices));
   PetscCall(PetscFree(result->images));
   PetscCall(PetscFree(result->target));
+  PetscCall(PetscFree(result->distance));
   PetscCall(PetscFree(result->cells));
+  PetscCall(PetscFree(result->weight));
+  PetscCall(PetscFree(result->quasi_conformal));
   PetscCall(PetscFree(result->ratio));
   PetscCall(PetscFree(result->iteration));
   PetscCall(PetscFree(result->energy));
   PetscCall(PetscFree(result->elapsed));
+  PetscCall(PetscFree(result->gradient));
   PetscCall(PetscMemzero(result, sizeof(*result)));
   PetscFunctionReturn(0);
 }

@@ -1,33 +1,70 @@
-/* What people look at: a page of pictures and plots of one result. All but EqmReportWrite runs on one rank. */
+/* What people look at: a page of pictures and plots of one result, or of several beside each other. All but
+   EqmReportWrite runs on one rank and is not collective. */
 #ifndef EQM_PICTURE_H
 #define EQM_PICTURE_H
 
 #include <stdint.h>
 #include <equimap/map.h>
 
-PETSC_EXTERN PetscErrorCode EqmReportWrite(MPI_Comm comm, const char *result_file, const char *picture, PetscInt width);
+enum { EQM_MOST_RESULTS = 8 };
+
+/* How a report is drawn. */
+typedef struct {
+  PetscInt width;    /* of the page in pixels */
+  PetscBool has_eye; /* look from `azimuth` and `elevation`, in place of where the mesh seems to want it */
+  PetscReal azimuth, elevation;
+  char up[4]; /* the axis that points up: x, y, z, -x, -y, -z; empty: guessed */
+} EqmReportOptions;
+
+/* EqmReportWrite - draw a page of results into `picture`, its format by suffix: .png .pdf .svg .html. Several results,
+   at most EQM_MOST_RESULTS, stand below each other with one colour scale and one table. Collective; rank 0 reads and
+   draws. Errors: EQM_ERR_USAGE (suffix, number of results, or built without cairo), EQM_ERR_IO (not a result, cannot be
+   written). */
+PETSC_EXTERN PetscErrorCode EqmReportWrite(MPI_Comm comm, PetscInt num_results, const char *const *result_files,
+                                           const char *picture, const EqmReportOptions *options);
+
+enum { EQM_NUM_MARKS = 6 };
 
 /* A result as it was stored, read back whole. */
 typedef struct {
+  char file[PETSC_MAX_PATH_LEN]; /* the result file */
   char command[64], method[64], status[64], message[EQM_MESSAGE_MAX], mesh_file[PETSC_MAX_PATH_LEN];
   char other_file[PETSC_MAX_PATH_LEN]; /* of a registration: B's mesh; else empty */
   char version[64], commit[64], date[64], options[8192];
   PetscInt64 iterations, folds, ranks, threads;
   PetscReal energy_initial, energy_final, angle_mean, angle_median, seconds;
+  PetscReal quasi_mean, quasi_median, quasi_max;
   PetscInt num_vertices, num_cells, cell_size, dim;
-  PetscReal *vertices; /* 3 * num_vertices */
-  PetscReal *images;   /* 3 * num_vertices; planar maps have z = 0 */
-  PetscReal *target;   /* of a registration: where vertices lie in the target, 3 * num_vertices; else NULL */
-  PetscInt target_dim; /* coordinates there */
-  PetscInt *cells;     /* cell_size * num_cells */
-  PetscReal *ratio;    /* per cell */
+  PetscReal *vertices;        /* 3 * num_vertices */
+  PetscReal *images;          /* 3 * num_vertices; planar maps have z = 0 */
+  PetscReal *target;          /* of a registration: where vertices lie in the target, 3 * num_vertices; else NULL */
+  PetscInt target_dim;        /* coordinates there */
+  PetscReal *distance;        /* of a registration: from a vertex to its point on B, per vertex; else NULL */
+  PetscInt *cells;            /* cell_size * num_cells */
+  PetscReal *weight;          /* per cell: measure, density included */
+  PetscReal *ratio;           /* per cell */
+  PetscReal *quasi_conformal; /* per cell; NULL: not known */
+  PetscBool has_angles;
+  PetscInt64 angle_histogram[EQM_NUM_ANGLE_BINS];
   EqmStatistics ratio_statistics;
+  EqmWeightedRatio weighted;
+  PetscInt num_marks, mark[EQM_NUM_MARKS]; /* cells that are folded or distorted most, the worst first */
   PetscInt num_history;
-  PetscReal *iteration, *energy, *elapsed; /* per row of the history */
+  PetscReal *iteration, *energy, *elapsed, *gradient; /* per row of the history */
 } EqmResult;
 
+/* Read a result file whole. Errors: EQM_ERR_IO (not a result, damaged), and nothing is left to free. */
 PETSC_INTERN PetscErrorCode EqmResultLoad(const char *file, EqmResult *result);
 PETSC_INTERN PetscErrorCode EqmResultReset(EqmResult *result);
+/* Compute what is not stored: weights, statistics, distances, the worst cells. */
+PETSC_INTERN PetscErrorCode EqmResultEvaluate(EqmResult *result);
+
+/* What the pictures of a result show: ratios, or what becomes of angles where the map is meant to keep these. */
+PETSC_INTERN PetscBool EqmResultIsConformal(const EqmResult *result);
+/* What shows how the iteration went, per row of the history, and its name: the energy; of a conformal map, whose energy
+   is far from zero, the norm of the gradient or, where the method has none, what the energy is above its smallest
+   value, NaN there. */
+PETSC_INTERN void EqmResultCurve(const EqmResult *result, double *values, const char **name);
 
 /* Triangles to draw, at the places of one array of points; each belongs to a cell. */
 typedef struct {
@@ -36,22 +73,34 @@ typedef struct {
   PetscInt *cell;     /* per face */
 } EqmFaces;
 
+/* The triangles of a surface, or the boundary triangles of a solid. */
 PETSC_INTERN PetscErrorCode EqmFacesOfSurface(const EqmResult *result, EqmFaces *faces);
-PETSC_INTERN PetscErrorCode EqmFacesOfCut(const EqmResult *result, const PetscReal direction[3], EqmFaces *faces);
+/* The boundary of those tetrahedra whose centroids, with vertices at `points`, lie on the lower side of a plane: a
+   solid cut open. `direction` is normal to the plane, which goes through the middle of all points. */
+PETSC_INTERN PetscErrorCode EqmFacesOfCut(const EqmResult *result, const PetscReal *points,
+                                          const PetscReal direction[3], EqmFaces *faces);
 PETSC_INTERN PetscErrorCode EqmFacesReset(EqmFaces *faces);
+/* Unit normals per vertex, 3 floats each, weighted by area; to be freed with PetscFree. */
 PETSC_INTERN PetscErrorCode EqmFacesNormals(const EqmFaces *faces, const PetscReal *points, PetscInt num_points,
                                             float **normals);
 
-/* An orthographic eye: an orthonormal frame, and the square that it sees. */
+/* An orthographic camera: an orthonormal frame, and the square that it sees. */
 typedef struct {
-  double right[3], up[3], toward[3]; /* `toward` points from the scene to the eye */
+  double right[3], up[3], toward[3]; /* `toward` points from the scene to the camera */
   double center[3], half_width;
 } EqmCamera;
 
+/* Above the plane, x to the right and y up. */
 PETSC_INTERN EqmCamera EqmCameraFlat(void);
+/* A camera that sees `pole` upwards and starts from the side of `front`, then walks `azimuth` degrees around the pole
+   and rises by `elevation` degrees. */
 PETSC_INTERN EqmCamera EqmCameraTurned(const double pole[3], const double front[3], double azimuth, double elevation);
-PETSC_INTERN EqmCamera EqmCameraGuess(const EqmFaces *faces, const PetscReal *points);
+/* A view in which most meshes look well, or the one that the options ask for; all faces are just seen. */
+PETSC_INTERN EqmCamera EqmCameraChoose(const EqmFaces *faces, const PetscReal *points, const EqmReportOptions *options);
+/* Aim and zoom so that all faces are just seen. */
 PETSC_INTERN void EqmCameraFit(EqmCamera *camera, const EqmFaces *faces, const PetscReal *points);
+/* A point in a square picture of `size` units: x to the right, y down, z towards the camera. */
+PETSC_INTERN void EqmCameraProject(const EqmCamera *camera, double size, const double point[3], double projected[3]);
 
 /* What is seen in each sample of a square picture: which face, where in it. */
 typedef struct {
@@ -66,13 +115,27 @@ PETSC_INTERN PetscErrorCode EqmRasterDestroy(EqmRaster *raster);
 PETSC_INTERN PetscErrorCode EqmRasterDraw(EqmRaster *raster, const EqmCamera *camera, const EqmFaces *faces,
                                           const PetscReal *points, PetscInt num_points);
 
-/* Colours, red green blue in 0 ... 1. */
+/* What colours stand for. */
+typedef enum {
+  EQM_SCALE_RATIO,   /* from 1/limit over 1 to limit, logarithmic */
+  EQM_SCALE_STRETCH, /* from 1 to limit, logarithmic */
+  EQM_SCALE_DISTANCE /* from 0 to limit */
+} EqmScaleKind;
+
 typedef struct {
-  double limit; /* ratios from 1/limit to limit have a colour of their own; on a log scale */
+  EqmScaleKind kind;
+  double limit; /* the last value that has a colour of its own */
 } EqmColorScale;
 
-PETSC_INTERN EqmColorScale EqmColorScaleOf(const PetscReal *ratio, PetscInt count);
-PETSC_INTERN void EqmColorOfRatio(EqmColorScale scale, double ratio, double rgb[3]);
+/* A scale on which all but about a twentieth of the values have a colour of their own. Ratios and stretches that are
+   closer to one than the smallest scale reaches get the smallest scale. */
+PETSC_INTERN EqmColorScale EqmColorScaleOf(EqmScaleKind kind, const PetscReal *values, PetscInt count);
+/* The scale that holds both, of one kind. */
+PETSC_INTERN EqmColorScale EqmColorScaleJoin(EqmColorScale a, EqmColorScale b);
+/* The value at a place of the scale, 0 ... 1. */
+PETSC_INTERN double EqmColorScaleValue(EqmColorScale scale, double place);
+/* The colour of a value: red, green, blue in 0 ... 1. Magenta for a ratio that is not positive: a folded cell. */
+PETSC_INTERN void EqmColorOf(EqmColorScale scale, double value, double rgb[3]);
 
 /* A pattern in the image whose pull-back to the surface shows the map: patches of equal area, or squares, which an
    angle-preserving map leaves square where they are small. */
@@ -92,19 +155,33 @@ typedef struct {
   const float *normals; /* per vertex: shaded; NULL: flat colours */
   EqmCamera camera;
   EqmColorScale scale;
-  PetscBool pulled_back; /* the pattern instead of the ratio */
+  const PetscReal *cell_values;   /* what is coloured: values of cells, */
+  const PetscReal *vertex_values; /* or of vertices; NULL both: the pattern */
   EqmPattern pattern;
   double relief; /* how much the light models the shape: 0 not at all ... 1 fully */
   double edges;  /* how dark the edges are drawn: 0 not at all ... 1 black */
 } EqmScene;
 
-/* Colour the samples, average `oversampling`^2 of them into a pixel: premultiplied ARGB, `stride` bytes a row. */
+/* Colour a picture of raster->size / oversampling pixels per side into `pixels`, premultiplied ARGB in words of 32
+   bits, `stride` bytes a row. */
 PETSC_INTERN PetscErrorCode EqmShade(const EqmRaster *raster, const EqmScene *scene, int oversampling,
                                      unsigned char *pixels, int stride);
 
-/* Draw the page of a result into a file, its format by suffix: .png .pdf .svg .html. Not collective. Errors:
-   EQM_ERR_USAGE (suffix, or built without cairo), EQM_ERR_IO; quiet, the reason is in `error`. */
-PETSC_INTERN PetscErrorCode EqmPictureWrite(const EqmResult *result, const char *file, int width, char *error,
-                                            size_t length);
+/* A page: its results, and what they share. */
+typedef struct {
+  PetscInt num;
+  const EqmResult *results;
+  EqmColorScale scale, distances; /* of the pictures; of a registration's distances */
+  PetscBool conformal;            /* all results are: the colours show what becomes of angles */
+  EqmReportOptions options;
+} EqmPage;
+
+PETSC_INTERN EqmPage EqmPageOf(PetscInt num_results, const EqmResult *results, const EqmReportOptions *options);
+/* What is coloured of a result on that page, per cell. */
+PETSC_INTERN const PetscReal *EqmPageValues(const EqmPage *page, const EqmResult *result);
+
+/* Draw a page into a file, whole or not at all, its format by suffix: .png .pdf .svg .html. Errors: EQM_ERR_USAGE
+   (suffix, or built without cairo), EQM_ERR_IO; quiet, the reason is in `error`. */
+PETSC_INTERN PetscErrorCode EqmPictureWrite(const EqmPage *page, const char *file, char *error, size_t length);
 
 #endif

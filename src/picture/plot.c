@@ -1,6 +1,6 @@
 /* Axes and curves. */
 #ifdef EQM_HAVE_CAIRO
-#include "plot.h"
+#include "picture/plot.h"
 #include <math.h>
 
 enum { MAX_TICKS = 64 };
@@ -8,7 +8,7 @@ enum { MAX_TICKS = 64 };
 /* An axis that holds all finite (on a log scale: positive) values, with a little air. Not collective. */
 EqmAxis EqmAxisOf(const double *values, PetscInt count, PetscBool logarithmic, const char *label)
 {
-  EqmAxis axis = {HUGE_VAL, -HUGE_VAL, logarithmic, label, PETSC_FALSE};
+  EqmAxis axis = {HUGE_VAL, -HUGE_VAL, logarithmic, label, PETSC_FALSE, 0.0};
   double air;
 
   for (PetscInt k = 0; k < count; k++) {
@@ -129,7 +129,7 @@ static void DrawAlong(cairo_t *page, EqmBox box, const EqmAxis *axis)
     EqmSetInk(page, EQM_PALE);
     Line(page, box.x, y, box.x + box.width, y);
     TickText(axis, ticks[k], text, sizeof(text));
-    if (!axis->bare) EqmDrawText(page, box.x - 7, y + 4, 12, PETSC_FALSE, EQM_RIGHT, EQM_GREY, text);
+    if (!axis->bare) EqmDrawText(page, box.x - 7 - axis->gap, y + 4, 12, PETSC_FALSE, EQM_RIGHT, EQM_GREY, text);
   }
   if (axis->label) EqmDrawText(page, box.x, box.y - 10, 13, PETSC_FALSE, EQM_LEFT, EQM_INK, axis->label);
 }

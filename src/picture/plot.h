@@ -3,7 +3,7 @@
 #define EQM_PLOT_H
 
 #include <cairo.h>
-#include "picture.h"
+#include "picture/picture.h"
 
 typedef struct {
   double x, y, width, height;
@@ -14,12 +14,28 @@ typedef struct {
   PetscBool logarithmic;
   const char *label; /* NULL: no label */
   PetscBool bare;    /* no numbers beside the ticks */
+  double gap;        /* between the axis and its numbers, beyond what is usual */
 } EqmAxis;
 
 typedef enum { EQM_LEFT, EQM_CENTER, EQM_RIGHT } EqmAlignment;
-typedef enum { EQM_INK, EQM_GREY, EQM_PALE, EQM_BLUE, EQM_ORANGE, EQM_NUM_INKS } EqmInk;
+typedef enum {
+  EQM_INK,
+  EQM_GREY,
+  EQM_PALE,
+  EQM_BLUE,
+  EQM_ORANGE,
+  EQM_GREEN,
+  EQM_VIOLET,
+  EQM_SKY,
+  EQM_YELLOW,
+  EQM_BROWN,
+  EQM_NUM_INKS
+} EqmInk;
 
+/* The colour of what is drawn next. */
 PETSC_INTERN void EqmSetInk(cairo_t *page, EqmInk ink);
+/* The colour of a result among several. */
+PETSC_INTERN EqmInk EqmInkOf(PetscInt number);
 PETSC_INTERN void EqmDrawText(cairo_t *page, double x, double y, double size, PetscBool bold, EqmAlignment alignment,
                               EqmInk ink, const char *text);
 PETSC_INTERN double EqmTextWidth(cairo_t *page, double size, PetscBool bold, const char *text);

@@ -1,8 +1,7 @@
 /* A z-buffer that remembers which face is seen in each sample, and where in the face. */
-#include "picture.h"
+#include "picture/picture.h"
 #include <math.h>
 
-/* An empty picture of size × size samples. Not collective. */
 PetscErrorCode EqmRasterCreate(int size, EqmRaster *raster)
 {
   const size_t samples = (size_t)size * (size_t)size;
@@ -17,7 +16,6 @@ PetscErrorCode EqmRasterCreate(int size, EqmRaster *raster)
   PetscFunctionReturn(0);
 }
 
-/* Not collective. */
 PetscErrorCode EqmRasterDestroy(EqmRaster *raster)
 {
   PetscFunctionBegin;
@@ -26,22 +24,12 @@ PetscErrorCode EqmRasterDestroy(EqmRaster *raster)
   PetscFunctionReturn(0);
 }
 
-/* Points in samples: x to the right, y down, z towards the eye. */
 static void Project(const EqmCamera *camera, int size, const PetscReal *points, PetscInt num_points, float *projected)
 {
-  const double scale = 0.5 * size / camera->half_width;
-
   for (PetscInt i = 0; i < num_points; i++) {
-    double x[3] = {0, 0, 0};
-    for (int d = 0; d < 3; d++) {
-      const double offset = points[3 * i + d] - camera->center[d];
-      x[0] += offset * camera->right[d];
-      x[1] += offset * camera->up[d];
-      x[2] += offset * camera->toward[d];
-    }
-    projected[3 * i] = (float)(0.5 * size + scale * x[0]);
-    projected[3 * i + 1] = (float)(0.5 * size - scale * x[1]);
-    projected[3 * i + 2] = (float)(scale * x[2]);
+    double x[3];
+    EqmCameraProject(camera, size, points + 3 * i, x);
+    for (int d = 0; d < 3; d++) projected[3 * i + d] = (float)x[d];
   }
 }
 
@@ -73,7 +61,6 @@ static void DrawFace(EqmRaster *raster, int32_t face, const float *a, const floa
   }
 }
 
-/* Draw faces into the picture. Not collective. */
 PetscErrorCode EqmRasterDraw(EqmRaster *raster, const EqmCamera *camera, const EqmFaces *faces, const PetscReal *points,
                              PetscInt num_points)
 {

@@ -1,5 +1,5 @@
 /* From samples to pixels: colour, light, edges, smoothing. */
-#include "picture.h"
+#include "picture/picture.h"
 #include <math.h>
 
 /* A key light over the left shoulder, a fill from the right, and what is left everywhere; in the eye's frame. */
@@ -60,13 +60,20 @@ static void ColorSample(const EqmRaster *raster, const EqmScene *scene, int x, i
                             1.0 - raster->corner[2 * s] - raster->corner[2 * s + 1]};
   double light = 1.0;
 
-  if (scene->pulled_back) {
+  if (!scene->cell_values && !scene->vertex_values) {
     const PetscReal *const places = scene->result->target ? scene->result->target : scene->result->images;
     double image[3] = {0, 0, 0};
     for (int k = 0; k < 9; k++) image[k % 3] += weight[k / 3] * places[3 * v[k / 3] + k % 3];
     EqmColorOfPattern(scene->pattern, image, rgb);
   } else {
-    EqmColorOfRatio(scene->scale, scene->result->ratio[scene->faces->cell[raster->face[s]]], rgb);
+    double value = 0.0;
+    if (scene->cell_values)
+      value = scene->cell_values[scene->faces->cell[raster->face[s]]];
+    else
+      for (int k = 0; k < 3; k++) value += weight[k] * scene->vertex_values[v[k]];
+    EqmColorOf(scene->scale, value, rgb);
+    if (scene->cell_values && !(scene->result->ratio[scene->faces->cell[raster->face[s]]] > 0.0))
+      EqmColorOf((EqmColorScale){EQM_SCALE_RATIO, 2.0}, -1.0, rgb); /* folded */
   }
   if (scene->normals) light = 1.0 - scene->relief * (1.0 - Light(scene, v, weight));
   if (scene->edges > 0.0 && EdgeDistance(raster, x, y, s) < 0.5 * oversampling) light *= 1.0 - scene->edges;
@@ -92,8 +99,6 @@ static uint32_t Pixel(const EqmRaster *raster, const EqmScene *scene, int x, int
   return byte[3] << 24 | byte[0] << 16 | byte[1] << 8 | byte[2];
 }
 
-/* Colour a picture of raster->size / oversampling pixels per side into `pixels`, premultiplied ARGB in words of 32
-   bits, `stride` bytes a row. Not collective. */
 PetscErrorCode EqmShade(const EqmRaster *raster, const EqmScene *scene, int oversampling, unsigned char *pixels,
                         int stride)
 {

@@ -1,17 +1,26 @@
 /* Text on a page; numbers as people read them. */
 #ifdef EQM_HAVE_CAIRO
-#include "plot.h"
+#include "picture/plot.h"
 #include <libxml/xmlstring.h>
 #include <math.h>
 #include <string.h>
 
-/* Choose the colour of what is drawn next. Not collective. */
 void EqmSetInk(cairo_t *page, EqmInk ink)
 {
-  static const double inks[EQM_NUM_INKS][3] = {
-      {0.13, 0.14, 0.16}, {0.42, 0.44, 0.47}, {0.88, 0.89, 0.90}, {0.13, 0.40, 0.67}, {0.84, 0.42, 0.11}};
+  static const double inks[EQM_NUM_INKS][3] = {{0.13, 0.14, 0.16}, {0.42, 0.44, 0.47}, {0.88, 0.89, 0.90},
+                                               {0.13, 0.40, 0.67}, {0.84, 0.42, 0.11}, {0.00, 0.55, 0.45},
+                                               {0.58, 0.28, 0.62}, {0.35, 0.68, 0.90}, {0.80, 0.65, 0.00},
+                                               {0.50, 0.30, 0.20}};
 
   cairo_set_source_rgb(page, inks[ink][0], inks[ink][1], inks[ink][2]);
+}
+
+EqmInk EqmInkOf(PetscInt number)
+{
+  static const EqmInk inks[EQM_MOST_RESULTS] = {EQM_BLUE, EQM_ORANGE, EQM_GREEN, EQM_VIOLET,
+                                                EQM_SKY,  EQM_YELLOW, EQM_BROWN, EQM_INK};
+
+  return inks[number % EQM_MOST_RESULTS];
 }
 
 static void SelectFont(cairo_t *page, double size, PetscBool bold)

@@ -1,68 +1,23 @@
-/* The pictures of the surface and of its image. */
+/* The pictures of a result: the surface or solid, a pattern pulled back to it, its image. */
 #ifdef EQM_HAVE_CAIRO
-#include "page.h"
+#include "picture/view.h"
 #include <math.h>
 #include <string.h>
 
-/* What one view shows. */
+enum { MOST_VIEWS = 5 };
+
+/* A row, and what its views point to. */
 typedef struct {
-  const char *title;
-  const EqmFaces *faces;
-  const PetscReal *points;
-  const float *normals;
-  EqmCamera camera;
-  PetscBool pulled_back;
-} View;
-
-enum { OVERSAMPLING = 2, MANY_FACES = 12000 };
-
-static PetscBool IsConformal(const EqmResult *result)
-{
-  return (PetscBool)!strcmp(result->command, "conformal");
-}
-
-static EqmPattern PatternOf(const EqmResult *result)
-{
-  if (result->target) return result->target_dim == 3 ? EQM_PATTERN_SPHERE : EQM_PATTERN_DISK;
-  if (result->dim == 3) return IsConformal(result) ? EQM_PATTERN_SPHERE_SQUARES : EQM_PATTERN_SPHERE;
-  if (IsConformal(result)) return EQM_PATTERN_DISK_SQUARES;
-  return strcmp(result->command, "square") ? EQM_PATTERN_DISK : EQM_PATTERN_SQUARE;
-}
-
-static PetscErrorCode PaintView(cairo_t *page, const EqmResult *result, EqmColorScale scale, const View *view,
-                                EqmBox box, int size)
-{
-  EqmScene scene = {result, view->faces, view->normals, view->camera, scale, view->pulled_back, PatternOf(result),
-                    1.0,    0.0};
-  EqmRaster raster;
-  cairo_surface_t *image;
-
-  PetscFunctionBegin;
-  if (view->points == result->images && !result->target)
-    scene.relief = 0.5; /* colours count for more than shape there */
-  if (!view->pulled_back && view->faces->num_faces < MANY_FACES) scene.edges = 0.25;
-  PetscCall(EqmRasterCreate(OVERSAMPLING * size, &raster));
-  PetscCall(EqmRasterDraw(&raster, &view->camera, view->faces, view->points, result->num_vertices));
-  image = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size, size);
-  if (cairo_surface_status(image) == CAIRO_STATUS_SUCCESS) {
-    cairo_surface_flush(image);
-    PetscCall(EqmShade(&raster, &scene, OVERSAMPLING, cairo_image_surface_get_data(image),
-                       cairo_image_surface_get_stride(image)));
-    cairo_surface_mark_dirty(image);
-    cairo_save(page);
-    cairo_translate(page, box.x, box.y);
-    cairo_scale(page, box.width / size, box.height / size);
-    cairo_set_source_surface(page, image, 0, 0);
-    cairo_paint(page);
-    cairo_restore(page);
-  }
-  cairo_surface_destroy(image);
-  PetscCall(EqmRasterDestroy(&raster));
-  PetscFunctionReturn(0);
-}
+  int count;
+  EqmView view[MOST_VIEWS];
+  EqmFaces surface, cut[3];
+  float *normals[MOST_VIEWS];
+} Row;
 
 static int NumViews(const EqmResult *result)
 {
+  if (result->target) return 4;
+  if (result->cell_size == 4) return 5;
   return result->dim == 2 ? 3 : 4;
 }
 
@@ -72,149 +27,155 @@ static double SideOf(const EqmResult *result, double width)
   return fmin(width / NumViews(result) - 24.0, 466.0);
 }
 
-/* How high a row of views is that is `width` wide. Not collective. */
 double EqmViewsHeight(const EqmResult *result, double width)
 {
   return SideOf(result, width) + 34.0;
 }
 
-static PetscErrorCode PaintRow(cairo_t *page, const EqmResult *result, EqmColorScale scale, const View *views,
-                               EqmBox box, double pixels_per_unit)
+static PetscErrorCode ResetRow(Row *row)
 {
-  const int count = NumViews(result);
-  const double side = SideOf(result, box.width);
-
   PetscFunctionBegin;
-  for (int k = 0; k < count; k++) {
-    const double middle = box.x + (k + 0.5) * box.width / count;
-    const EqmBox place = {middle - 0.5 * side, box.y + 34.0, side, side};
-    EqmDrawText(page, middle, box.y + 14, 15, PETSC_TRUE, EQM_CENTER, EQM_INK, views[k].title);
-    PetscCall(PaintView(page, result, scale, &views[k], place, (int)(side * pixels_per_unit + 0.5)));
-  }
+  for (int k = 0; k < MOST_VIEWS; k++) PetscCall(PetscFree(row->normals[k]));
+  PetscCall(EqmFacesReset(&row->surface));
+  for (int k = 0; k < 3; k++) PetscCall(EqmFacesReset(&row->cut[k]));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DrawPlanar(cairo_t *page, const EqmResult *result, EqmColorScale scale, EqmBox box,
-                                 double pixels_per_unit)
+/* Faces at some points, shaded. */
+static PetscErrorCode AddView(const EqmResult *result, const char *title, const EqmFaces *faces,
+                              const PetscReal *points, EqmCamera camera, EqmPaint paint, Row *row)
 {
-  EqmFaces faces;
-  EqmCamera front, flat = EqmCameraFlat();
-  float *normals;
+  float **const normals = &row->normals[row->count];
 
   PetscFunctionBegin;
-  PetscCall(EqmFacesOfSurface(result, &faces));
-  PetscCall(EqmFacesNormals(&faces, result->vertices, result->num_vertices, &normals));
-  front = EqmCameraGuess(&faces, result->vertices);
-  EqmCameraFit(&flat, &faces, result->images);
-  const View views[] = {{"Surface, coloured by area ratio", &faces, result->vertices, normals, front, PETSC_FALSE},
-                        {IsConformal(result) ? "Squares, pulled back" : "Checkerboard of equal areas, pulled back",
-                         &faces, result->vertices, normals, front, PETSC_TRUE},
-                        {"Image, coloured by area ratio", &faces, result->images, NULL, flat, PETSC_FALSE}};
-  PetscCall(PaintRow(page, result, scale, views, box, pixels_per_unit));
-  PetscCall(PetscFree(normals));
-  PetscCall(EqmFacesReset(&faces));
+  PetscCall(EqmFacesNormals(faces, points, result->num_vertices, normals));
+  row->view[row->count++] = (EqmView){title, faces, points, *normals, camera, paint, PETSC_FALSE};
   PetscFunctionReturn(0);
 }
 
-/* An eye beside the unit sphere, a little above its equator. */
+/* Beside the unit sphere, a little above its equator. */
 static EqmCamera SphereCamera(double azimuth)
 {
   static const double pole[3] = {0, 0, 1}, front[3] = {1, 0, 0};
   return EqmCameraTurned(pole, front, azimuth, 15.0);
 }
 
-static PetscErrorCode DrawSphere(cairo_t *page, const EqmResult *result, EqmColorScale scale, EqmBox box,
-                                 double pixels_per_unit)
+static PetscErrorCode AddSurface(const EqmPage *page, const EqmResult *result, EqmCamera camera, Row *row)
 {
-  EqmFaces faces;
-  EqmCamera front, near = SphereCamera(20.0), far = SphereCamera(200.0);
-  float *normals, *image_normals;
+  const PetscBool conformal = (PetscBool)!strcmp(result->command, "conformal");
+  const char *const pattern = conformal          ? "Squares, pulled back"
+                              : result->dim == 2 ? "Checkerboard of equal areas, pulled back"
+                                                 : "Patches of equal area, pulled back";
 
   PetscFunctionBegin;
-  PetscCall(EqmFacesOfSurface(result, &faces));
-  PetscCall(EqmFacesNormals(&faces, result->vertices, result->num_vertices, &normals));
-  PetscCall(EqmFacesNormals(&faces, result->images, result->num_vertices, &image_normals));
-  front = EqmCameraGuess(&faces, result->vertices);
-  const View views[] = {{"Surface, coloured by area ratio", &faces, result->vertices, normals, front, PETSC_FALSE},
-                        {IsConformal(result) ? "Squares, pulled back" : "Patches of equal area, pulled back", &faces,
-                         result->vertices, normals, front, PETSC_TRUE},
-                        {"Image, one side", &faces, result->images, image_normals, near, PETSC_FALSE},
-                        {"Image, other side", &faces, result->images, image_normals, far, PETSC_FALSE}};
-  PetscCall(PaintRow(page, result, scale, views, box, pixels_per_unit));
-  PetscCall(PetscFree(normals));
-  PetscCall(PetscFree(image_normals));
-  PetscCall(EqmFacesReset(&faces));
+  PetscCall(AddView(result, page->conformal ? "Surface, coloured by stretch" : "Surface, coloured by area ratio",
+                    &row->surface, result->vertices, camera, EQM_PAINT_CELLS, row));
+  row->view[row->count - 1].marked = PETSC_TRUE;
+  PetscCall(AddView(result, pattern, &row->surface, result->vertices, camera, EQM_PAINT_PATTERN, row));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DrawBall(cairo_t *page, const EqmResult *result, EqmColorScale scale, EqmBox box,
-                               double pixels_per_unit)
+static PetscErrorCode AddImage(const EqmResult *result, Row *row)
 {
-  static const PetscReal cut_direction[3] = {1, 0, 0};
-  EqmFaces skin, cut;
-  EqmCamera front, near = SphereCamera(20.0);
-  float *normals, *ball_normals, *cut_normals;
+  EqmCamera flat = EqmCameraFlat();
 
   PetscFunctionBegin;
-  PetscCall(EqmFacesOfSurface(result, &skin));
-  PetscCall(EqmFacesOfCut(result, cut_direction, &cut));
-  PetscCall(EqmFacesNormals(&skin, result->vertices, result->num_vertices, &normals));
-  PetscCall(EqmFacesNormals(&skin, result->images, result->num_vertices, &ball_normals));
-  PetscCall(EqmFacesNormals(&cut, result->images, result->num_vertices, &cut_normals));
-  front = EqmCameraGuess(&skin, result->vertices);
-  const View views[] = {{"Solid, coloured by volume ratio", &skin, result->vertices, normals, front, PETSC_FALSE},
-                        {"Graticule of the ball, pulled back", &skin, result->vertices, normals, front, PETSC_TRUE},
-                        {"Image", &skin, result->images, ball_normals, near, PETSC_FALSE},
-                        {"Image, cut open", &cut, result->images, cut_normals, near, PETSC_FALSE}};
-  PetscCall(PaintRow(page, result, scale, views, box, pixels_per_unit));
-  PetscCall(PetscFree(normals));
-  PetscCall(PetscFree(ball_normals));
-  PetscCall(PetscFree(cut_normals));
-  PetscCall(EqmFacesReset(&skin));
-  PetscCall(EqmFacesReset(&cut));
+  if (result->dim == 2) {
+    EqmCameraFit(&flat, &row->surface, result->images);
+    row->view[row->count++] = (EqmView){
+        "Image, worst cells numbered", &row->surface, result->images, NULL, flat, EQM_PAINT_CELLS, PETSC_TRUE};
+    PetscFunctionReturn(0);
+  }
+  PetscCall(
+      AddView(result, "Image, one side", &row->surface, result->images, SphereCamera(20.0), EQM_PAINT_CELLS, row));
+  row->view[row->count - 1].marked = PETSC_TRUE;
+  PetscCall(
+      AddView(result, "Image, other side", &row->surface, result->images, SphereCamera(200.0), EQM_PAINT_CELLS, row));
+  row->view[row->count - 1].marked = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
-/* A registration: A and the same on B, with a pattern of the target, which tells what corresponds, and with the ratio.
+/* A cut through what a camera sees: the half that is farther away stays, turned by some degrees so that the cut shows.
  */
-static PetscErrorCode DrawRegistered(cairo_t *page, const EqmResult *result, EqmColorScale scale, EqmBox box,
-                                     double pixels_per_unit)
+static PetscErrorCode AddCut(const EqmResult *result, const char *title, const PetscReal *points, EqmCamera camera,
+                             const double across[3], int number, Row *row)
 {
-  EqmFaces faces;
-  EqmCamera of_a, of_b;
-  float *normals_a, *normals_b;
+  const PetscReal direction[3] = {across[0], across[1], across[2]};
 
   PetscFunctionBegin;
-  PetscCall(EqmFacesOfSurface(result, &faces));
-  PetscCall(EqmFacesNormals(&faces, result->vertices, result->num_vertices, &normals_a));
-  PetscCall(EqmFacesNormals(&faces, result->images, result->num_vertices, &normals_b));
-  of_a = EqmCameraGuess(&faces, result->vertices);
-  of_b = of_a; /* seen from the same side, so that what differs is the shape */
-  EqmCameraFit(&of_b, &faces, result->images);
-  const View views[] = {{"A, coloured by ratio", &faces, result->vertices, normals_a, of_a, PETSC_FALSE},
-                        {"A, with a pattern", &faces, result->vertices, normals_a, of_a, PETSC_TRUE},
-                        {"The pattern carried to B", &faces, result->images, normals_b, of_b, PETSC_TRUE},
-                        {"A on B, coloured by ratio", &faces, result->images, normals_b, of_b, PETSC_FALSE}};
-  PetscCall(PaintRow(page, result, scale, views, box, pixels_per_unit));
-  PetscCall(PetscFree(normals_a));
-  PetscCall(PetscFree(normals_b));
-  PetscCall(EqmFacesReset(&faces));
+  PetscCall(EqmFacesOfCut(result, points, direction, &row->cut[number]));
+  PetscCall(AddView(result, title, &row->cut[number], points, camera, EQM_PAINT_CELLS, row));
   PetscFunctionReturn(0);
 }
 
-/* Draw the row of pictures: the surface or solid, a pattern pulled back to it, its image. Not collective. */
-PetscErrorCode EqmDrawViews(cairo_t *page, const EqmResult *result, EqmColorScale scale, EqmBox box,
+/* The boundary, and three cuts: one of the solid, two of the ball. */
+static PetscErrorCode AddSolid(const EqmResult *result, EqmCamera camera, Row *row)
+{
+  static const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0};
+
+  PetscFunctionBegin;
+  PetscCall(AddView(result, "Solid, coloured by volume ratio", &row->surface, result->vertices, camera, EQM_PAINT_CELLS,
+                    row));
+  row->view[row->count - 1].marked = PETSC_TRUE;
+  PetscCall(AddView(result, "Graticule of the ball, pulled back", &row->surface, result->vertices, camera,
+                    EQM_PAINT_PATTERN, row));
+  PetscCall(AddCut(result, "Solid, cut open", result->vertices, camera, camera.toward, 0, row));
+  PetscCall(AddCut(result, "Image, cut at x = 0", result->images, SphereCamera(20.0), x, 1, row));
+  PetscCall(AddCut(result, "Image, cut at y = 0", result->images, SphereCamera(70.0), y, 2, row));
+  PetscFunctionReturn(0);
+}
+
+/* A registration: A and the same on B, seen from the same side, so that what differs is the shape; with a pattern of
+   the target, which tells what corresponds, and with the ratio or the distance. */
+static PetscErrorCode AddRegistered(const EqmResult *result, EqmCamera camera, Row *row)
+{
+  EqmCamera of_b = camera;
+
+  PetscFunctionBegin;
+  EqmCameraFit(&of_b, &row->surface, result->images);
+  PetscCall(AddView(result, "A, coloured by ratio", &row->surface, result->vertices, camera, EQM_PAINT_CELLS, row));
+  row->view[row->count - 1].marked = PETSC_TRUE;
+  PetscCall(AddView(result, "A, with a pattern", &row->surface, result->vertices, camera, EQM_PAINT_PATTERN, row));
+  PetscCall(AddView(result, "The pattern carried to B", &row->surface, result->images, of_b, EQM_PAINT_PATTERN, row));
+  PetscCall(AddView(result, result->distance ? "On B: the distance from A" : "A on B, coloured by ratio", &row->surface,
+                    result->images, of_b, result->distance ? EQM_PAINT_DISTANCE : EQM_PAINT_CELLS, row));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MakeRow(const EqmPage *page, const EqmResult *result, Row *row)
+{
+  EqmCamera camera;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(row, sizeof(*row)));
+  PetscCall(EqmFacesOfSurface(result, &row->surface));
+  camera = EqmCameraChoose(&row->surface, result->vertices, &page->options);
+  if (result->target) {
+    PetscCall(AddRegistered(result, camera, row));
+  } else if (result->cell_size == 4) {
+    PetscCall(AddSolid(result, camera, row));
+  } else {
+    PetscCall(AddSurface(page, result, camera, row));
+    PetscCall(AddImage(result, row));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmDrawViews(cairo_t *cairo, const EqmPage *page, const EqmResult *result, EqmBox box,
                             double pixels_per_unit)
 {
+  const double side = SideOf(result, box.width);
+  Row row;
+
   PetscFunctionBegin;
-  if (result->target)
-    PetscCall(DrawRegistered(page, result, scale, box, pixels_per_unit));
-  else if (result->dim == 2)
-    PetscCall(DrawPlanar(page, result, scale, box, pixels_per_unit));
-  else if (result->cell_size == 3)
-    PetscCall(DrawSphere(page, result, scale, box, pixels_per_unit));
-  else
-    PetscCall(DrawBall(page, result, scale, box, pixels_per_unit));
+  PetscCall(MakeRow(page, result, &row));
+  for (int k = 0; k < row.count; k++) {
+    const double middle = box.x + (k + 0.5) * box.width / row.count;
+    const EqmBox place = {middle - 0.5 * side, box.y + 34.0, side, side};
+    EqmDrawText(cairo, middle, box.y + 14, side < 320 ? 13 : 15, PETSC_TRUE, EQM_CENTER, EQM_INK, row.view[k].title);
+    PetscCall(EqmPaintView(cairo, page, result, &row.view[k], place, (int)(side * pixels_per_unit + 0.5)));
+  }
+  PetscCall(ResetRow(&row));
   PetscFunctionReturn(0);
 }
 #endif

@@ -3,12 +3,17 @@
 usage: python3 test_report.py EQUIMAP [RANKS]
 """
 import os
+import re
+import shutil
 import struct
 import subprocess
 import sys
 import tempfile
 import xml.dom.minidom
 import zlib
+
+import h5py
+import numpy
 
 
 def check_png(path, width):
@@ -30,6 +35,57 @@ def check_png(path, width):
         place += 12 + length
     assert kinds[-1] == b"IEND"
     assert len(set(zlib.decompress(pixels))) > 50  # many colours
+
+
+def rows_of(path):
+    """The rows of a report's first table: name to values."""
+    with open(path, encoding="utf-8") as file:
+        page = file.read()
+    assert "%%" not in page
+    table = page.split("<table>")[1].split("</table>")[0]
+    return {name: re.findall("<td>(.*?)</td>", cells) for name, cells in re.findall("<tr><th>(.*?)</th>(.*?)</tr>", table)}
+
+
+def check_figures(run):
+    """Two results on one page, one of them with a cell that is turned over: the figures are those of the files."""
+    shutil.copy("hills.h5", "folded.h5")
+    with h5py.File("folded.h5", "r+") as file:
+        file["/cell/ratio"][7] = -0.25
+        file.attrs["folds"] = 1
+    run("report", "hills.h5", "folded.h5", "-o", "both.html", "-width", "400")
+    rows = rows_of("both.html")
+    with h5py.File("hills.h5", "r") as file:
+        worst = numpy.argsort(-numpy.abs(numpy.log(file["/cell/ratio"][...])), kind="stable")[:6].tolist()
+        assert rows["worst cells"][0] == ", ".join(map(str, worst)), rows["worst cells"]
+        assert rows["worst cells"][1] == ", ".join(map(str, [7] + [cell for cell in worst if cell != 7][:5]))
+        assert rows["folds"] == ["0", "1"] and rows["iterations"][0] == str(file.attrs["iterations"])
+        deviation = rows["SD of r, by area"][0].replace("×10", "e").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+        assert abs(float(deviation) / file.attrs["ratio_weighted_sd"] - 1) < 1e-3, (deviation, file.attrs["ratio_weighted_sd"])
+
+
+def check_kinds(run):
+    """Angles, solids and correspondences have pages of their own kind; the camera goes where it is told."""
+    run("generate", "sphere", "-n", "200", "-o", "sphere.obj")
+    run("conformal", "sphere.obj", "-o", "angles.h5", expected=(0, 4))
+    run("report", "angles.h5", "-o", "angles.svg", "-width", "600")
+    with open("angles.svg", encoding="utf-8") as file:
+        assert file.read().count("<image") >= 4  # the pictures; letters are glyphs
+    run("generate", "ball", "-n", "200", "-o", "ball.vtu")
+    run("ball", "ball.vtu", "-o", "ball.h5", expected=(0, 4))
+    run("report", "ball.h5", "-o", "ball.html", "-width", "600")
+    assert "SD of r, by volume" in rows_of("ball.html") and rows_of("ball.html")["angle error, mean / median"] == ["–"]
+    run("generate", "cap", "-n", "300", "-o", "cap.obj")
+    run("register", "hills.obj", "cap.obj", "-o", "pair.h5", expected=(0, 4, 5))
+    run("report", "pair.h5", "-o", "pair.png", "-width", "600")
+    check_png("pair.png", 600)
+    pages = []
+    for view in (("-view", "0,10"), ("-view", "90,10"), ("-view", "0,10", "-up", "x")):
+        run("report", "hills.h5", "-o", "view.png", "-width", "400", *view)
+        with open("view.png", "rb") as file:
+            pages.append(file.read())
+    assert len(set(pages)) == 3
+    for wrong in (("-view", "3"), ("-up", "w")):
+        run("report", "hills.h5", "-o", "wrong.png", *wrong, expected=(2,))
 
 
 def main(equimap, ranks):
@@ -67,7 +123,9 @@ def main(equimap, ranks):
         file.write(data[: len(data) // 2])
     run("report", "cut.h5", "-o", "new.png", expected=(6,))
     assert not [name for name in os.listdir() if name.startswith("new") or "tmp" in name or "docx" in name]
-    print("report: png, svg, pdf and html drawn; seven wrong calls refused")
+    check_figures(run)
+    check_kinds(run)
+    print("report: png, svg, pdf and html drawn; figures are those of the results; wrong calls refused")
 
 
 if __name__ == "__main__":
