@@ -8,6 +8,7 @@ static const EqmStartType *starts[MOST_STARTS] = {
     &EqmStartPlaneArcLength, &EqmStartSphereLinearType, &EqmStartSphereFixedPoint, &EqmStartSphereDescending,
     &EqmStartSphereGuarded,  &EqmStartSphereConformal,  &EqmStartSphereResolved,   &EqmStartSphereNormals,
     &EqmStartSphereGauss,    &EqmStartSphereTutte,      &EqmStartBallHarmonic,     &EqmStartBallFixedPoint,
+    &EqmStartPlaneCascade,   &EqmStartSphereCascade,
 };
 
 PetscErrorCode EqmStartRegister(const EqmStartType *type)

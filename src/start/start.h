@@ -49,7 +49,8 @@ PETSC_INTERN PetscErrorCode EqmStartRun(const EqmStartType *type, EqmProblem pro
 PETSC_INTERN const EqmStartType EqmStartPlaneHarmonic, EqmStartPlaneFixedPoint, EqmStartPlaneTutte,
     EqmStartPlaneGuarded, EqmStartPlaneArcLength, EqmStartSphereLinearType, EqmStartSphereFixedPoint,
     EqmStartSphereDescending, EqmStartSphereGuarded, EqmStartSphereConformal, EqmStartSphereResolved,
-    EqmStartSphereNormals, EqmStartSphereGauss, EqmStartSphereTutte, EqmStartBallHarmonic, EqmStartBallFixedPoint;
+    EqmStartSphereNormals, EqmStartSphereGauss, EqmStartSphereTutte, EqmStartBallHarmonic, EqmStartBallFixedPoint,
+    EqmStartPlaneCascade, EqmStartSphereCascade;
 
 /* ---- parts that several starts use */
 /* A step in (0, 1] along a straight motion that keeps cells of positive area well away from zero: the whole one if it

@@ -1,0 +1,302 @@
+/* The minimum of a level's objective by damped Gauss-Newton steps on factored matrices. */
+#include "hierarchy/balance.h"
+#include "hierarchy/levelsystem.h"
+#include "hierarchy/prolongation.h"
+
+/* A cell's Laplacian with equal weights, for one coordinate; what is held goes to the right-hand side. */
+static void AddTutteCell(const EqmLevelMap *map, const unsigned char *count, PetscInt axis, PetscInt cell,
+                         EqmLevelSystem *system)
+{
+  const PetscInt *const v = map->level->cells + 3 * cell;
+  PetscReal matrix[9], right[3];
+  PetscInt size = 0, n = 0;
+
+  for (PetscInt a = 0; a < 3; a++) size += count[v[a]];
+  for (PetscInt a = 0; a < 3; a++) {
+    PetscInt m = 0;
+    if (!count[v[a]]) continue;
+    right[n] = 0.;
+    for (PetscInt b = 0; b < 3; b++) {
+      if (count[v[b]])
+        matrix[size * n + m++] = a == b ? 2. : -1.;
+      else
+        right[n] += map->x[2 * v[b] + axis];
+    }
+    n++;
+  }
+  EqmLevelSystemAdd(system, cell, matrix, right);
+}
+
+PetscErrorCode EqmTutteLevel(EqmLevelMap *map)
+{
+  const EqmHierarchyLevel *const level = map->level;
+  unsigned char *count;
+  EqmLevelSystem system;
+  PetscBool success;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(level->num_vertices, &count));
+  for (PetscInt v = 0; v < level->num_vertices; v++) count[v] = level->part[v] == EQM_INSIDE;
+  PetscCall(EqmLevelSystemCreate(level, count, &system));
+  for (PetscInt axis = 0; axis < 2; axis++) {
+    const PetscReal *solution;
+    PetscCall(EqmLevelSystemClear(&system));
+    for (PetscInt c = 0; c < level->num_cells; c++) AddTutteCell(map, count, axis, c, &system);
+    PetscCall(EqmLevelSystemShift(&system, 0.));
+    PetscCall(EqmLevelSystemFactorSolve(&system, &success));
+    PetscCall(VecGetArrayRead(system.solution, &solution));
+    for (PetscInt v = 0; v < level->num_vertices && success; v++) {
+      if (count[v]) map->x[2 * v + axis] = solution[system.first[v]];
+    }
+    PetscCall(VecRestoreArrayRead(system.solution, &solution));
+  }
+  PetscCall(EqmLevelSystemDestroy(&system));
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}
+
+/* A cell's Laplacian `weight` (per corner: of the edge opposite it) times the product of the corners' frames. */
+static void AddLaplacian(const EqmLevelMap *map, const PetscReal weight[3], EqmCellSystem *s, const PetscInt first[3],
+                         PetscInt size)
+{
+  for (PetscInt a = 0; a < 3; a++) {
+    for (PetscInt b = 0; b < 3; b++) {
+      const PetscReal w = a == b ? weight[(a + 1) % 3] + weight[(a + 2) % 3] : -weight[3 - a - b];
+      for (PetscInt k = 0; k < s->count[a]; k++) {
+        for (PetscInt l = 0; l < s->count[b]; l++) {
+          PetscReal product = 0.;
+          for (PetscInt c = 0; c < map->dim; c++)
+            product += s->frame[a][map->dim * k + c] * s->frame[b][map->dim * l + c];
+          s->matrix[size * (first[a] + k) + first[b] + l] += w * product;
+        }
+      }
+    }
+  }
+}
+
+/* Sums over a cell's corners and their directions: derivatives of a measure. */
+static void Project(const EqmLevelMap *map, PetscBool of_area, const PetscReal *const p[3], const EqmCellSystem *s,
+                    PetscReal row[6])
+{
+  PetscReal g[3];
+
+  for (PetscInt a = 0, n = 0; a < 3; a++) {
+    EqmLevelGradient(map->dim, of_area, p[a], p[(a + 1) % 3], p[(a + 2) % 3], g);
+    for (PetscInt k = 0; k < s->count[a]; k++, n++) {
+      row[n] = 0.;
+      for (PetscInt c = 0; c < map->dim; c++) row[n] += s->frame[a][map->dim * k + c] * g[c];
+    }
+  }
+}
+
+/* Minus the gradient of factor times (the cell's Dirichlet energy - its area), on the sphere without the area. */
+static void AddAnglePull(const EqmLevelMap *map, PetscReal factor, const PetscReal half[3], const PetscReal *const p[3],
+                         EqmCellSystem *s)
+{
+  PetscReal area[6] = {0., 0., 0., 0., 0., 0.};
+
+  if (map->dim == 2) Project(map, PETSC_TRUE, p, s, area);
+  for (PetscInt a = 0, n = 0; a < 3; a++) {
+    const PetscInt b = (a + 1) % 3, c = (a + 2) % 3;
+    for (PetscInt k = 0; k < s->count[a]; k++, n++) {
+      PetscReal pull = 0.;
+      for (PetscInt e = 0; e < map->dim; e++)
+        pull += s->frame[a][map->dim * k + e] * (half[c] * (p[a][e] - p[b][e]) + half[b] * (p[a][e] - p[c][e]));
+      s->right[n] -= factor * (pull - area[n]);
+    }
+  }
+}
+
+void EqmBalanceCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, PetscReal floor, EqmCellSystem *s)
+{
+  const PetscInt *const v = map->level->cells + 3 * cell, dim = map->dim;
+  const PetscReal w = map->level->weight[cell], angle = .5 * EqmAngleFactor(map);
+  const PetscReal *const p[3] = {map->x + dim * v[0], map->x + dim * v[1], map->x + dim * v[2]};
+  PetscReal half[3], weight[3], worst = 0., row[6];
+  EqmResidual residual[2];
+  const PetscInt count = EqmLevelResiduals(dim, p[0], p[1], p[2], 1. / (map->total * w), residual);
+  PetscInt first[3], size = 0;
+
+  for (PetscInt a = 0; a < 3; a++) {
+    s->count[a] = EqmMotionFrame((EqmMotion)map->motion[v[a]], p[a], s->frame[a]);
+    first[a] = size;
+    size += s->count[a];
+  }
+  for (PetscInt k = 0; k < size; k++) s->right[k] = 0.;
+  for (PetscInt k = 0; k < size * size; k++) s->matrix[k] = 0.;
+  for (PetscInt m = 0; m < count; m++) {
+    Project(map, residual[m].of_area, p, s, row);
+    for (PetscInt k = 0; k < size; k++) row[k] *= residual[m].slope;
+    for (PetscInt k = 0; k < size; k++) s->right[k] -= w * residual[m].rho * row[k];
+    for (PetscInt k = 0; k < size * size; k++) s->matrix[k] += w * row[k / size] * row[k % size];
+    worst = PetscMax(worst, PetscAbsReal(residual[m].rho));
+  }
+  EqmHalfCotangents(map->level, cell, half);
+  AddAnglePull(map, angle, half, p, s);
+  for (PetscInt a = 0; a < 3; a++) weight[a] = angle * half[a] + damping / (2. * PetscSqrtReal(3.)) * (worst + floor);
+  AddLaplacian(map, weight, s, first, size);
+}
+
+typedef struct {
+  EqmLevelMap *map;
+  PetscInt coarser; /* levels for multigrid; 0: factor */
+  EqmLevelSystem system;
+  PetscReal *trial[2], damping, tolerance;
+} Newton;
+
+/* The matrix at the present map. */
+static PetscErrorCode Assemble(Newton *newton, PetscReal residual)
+{
+  const PetscReal floor = .3 * PetscSqrtReal(residual), shift = 1e-10;
+  EqmCellSystem s;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLevelSystemClear(&newton->system));
+  for (PetscInt c = 0; c < newton->map->level->num_cells; c++) {
+    EqmBalanceCell(newton->map, c, newton->damping, floor, &s);
+    EqmLevelSystemAdd(&newton->system, c, s.matrix, s.right);
+  }
+  PetscCall(EqmLevelSystemShift(&newton->system, shift));
+  PetscFunctionReturn(0);
+}
+
+static void CountUnknowns(const EqmLevelMap *map, unsigned char *count)
+{
+  PetscReal frame[6];
+
+  for (PetscInt v = 0; v < map->level->num_vertices; v++)
+    count[v] = (unsigned char)EqmMotionFrame((EqmMotion)map->motion[v], map->x + map->dim * v, frame);
+}
+
+/* The first unknown of each vertex of a level and, last, their number. */
+static PetscErrorCode NumberUnknowns(const EqmLevelMap *map, PetscInt **first)
+{
+  const PetscInt n = map->level->num_vertices;
+  unsigned char *count;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &count));
+  PetscCall(PetscMalloc1(n + 1, first));
+  CountUnknowns(map, count);
+  (*first)[0] = 0;
+  for (PetscInt v = 0; v < n; v++) (*first)[v + 1] = (*first)[v] + count[v];
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}
+
+/* Solve by multigrid, with prolongations at the present map. */
+static PetscErrorCode MultigridSolve(Newton *newton, PetscBool *success)
+{
+  PetscInt *first[EQM_MOST_LEVELS], iterations;
+  Mat prolongation[EQM_MOST_LEVELS];
+
+  PetscFunctionBegin;
+  PetscCall(NumberUnknowns(newton->map, &first[0]));
+  for (PetscInt k = 0; k < newton->coarser; k++) {
+    EqmLevelMap *const map = newton->map + k;
+    PetscCall(EqmLevelMapRestrict(map, map + 1));
+    PetscCall(NumberUnknowns(map + 1, &first[k + 1]));
+    PetscCall(EqmProlongationCreate(map, map + 1, first[k], first[k + 1], &prolongation[k]));
+  }
+  PetscCall(EqmLevelSystemMultigridSolve(&newton->system, newton->coarser, prolongation, newton->tolerance, &iterations,
+                                         success));
+  for (PetscInt k = 0; k < newton->coarser; k++) PetscCall(MatDestroy(&prolongation[k]));
+  for (PetscInt k = 0; k <= newton->coarser; k++) PetscCall(PetscFree(first[k]));
+  PetscFunctionReturn(0);
+}
+
+/* The map at length t along the step. */
+static PetscErrorCode Move(const Newton *newton, PetscReal t, PetscReal *to)
+{
+  const EqmLevelMap *const map = newton->map;
+  const PetscInt dim = map->dim;
+  const PetscReal *step;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(newton->system.solution, &step));
+  for (PetscInt v = 0; v < map->level->num_vertices; v++) {
+    const EqmMotion motion = (EqmMotion)map->motion[v];
+    PetscReal frame[6];
+    const PetscInt count = EqmMotionFrame(motion, map->x + dim * v, frame);
+    for (PetscInt c = 0; c < dim; c++) {
+      PetscReal d = 0.;
+      for (PetscInt k = 0; k < count; k++) d += step[newton->system.first[v] + k] * frame[dim * k + c];
+      to[dim * v + c] = map->x[dim * v + c] + t * d;
+    }
+    EqmRetract(motion, to + dim * v);
+  }
+  PetscCall(VecRestoreArrayRead(newton->system.solution, &step));
+  PetscFunctionReturn(0);
+}
+
+/* Halve the step until the objective falls, and once more if that is better still. `t`: the step taken, 0: none. */
+static PetscErrorCode Search(Newton *newton, EqmLevelValue *value, PetscReal *t)
+{
+  enum { MOST_TRIALS = 12 };
+  EqmLevelMap *const map = newton->map;
+  const PetscInt length = map->dim * map->level->num_vertices;
+  EqmLevelValue best = *value;
+  PetscReal s = 1.;
+
+  PetscFunctionBegin;
+  *t = 0.;
+  for (PetscInt n = 0; n < MOST_TRIALS; n++, s *= .5) {
+    EqmLevelValue trial;
+    PetscCall(Move(newton, s, newton->trial[0]));
+    trial = EqmLevelMapLook(map, newton->trial[0]);
+    if (trial.objective < best.objective) {
+      PetscReal *const swap = newton->trial[0];
+      newton->trial[0] = newton->trial[1];
+      newton->trial[1] = swap;
+      best = trial;
+      *t = s;
+    } else if (*t > 0.) {
+      break;
+    }
+  }
+  if (*t > 0.) PetscCall(PetscArraycpy(map->x, newton->trial[1], length));
+  *value = EqmLevelMapLook(map, map->x);
+  PetscFunctionReturn(0);
+}
+
+/* Less damping after whole steps, more after short ones. */
+static PetscReal NextDamping(PetscReal damping, PetscReal t)
+{
+  const PetscReal least = 1e-6;
+
+  if (t >= .99) return PetscMax(.1 * damping, least);
+  if (t > .3) return damping;
+  return t < .13 ? 31.6 * damping : 10. * damping;
+}
+
+PetscErrorCode EqmBalanceLevel(EqmLevelMap *map, PetscInt coarser, const EqmBalanceOptions *options)
+{
+  const PetscInt n = map->level->num_vertices, length = map->dim * n;
+  const PetscReal hopeless = 1e8;
+  Newton newton = {.map = map, .coarser = coarser, .damping = options->damping, .tolerance = options->tolerance};
+  EqmLevelValue value = EqmLevelMapLook(map, map->x);
+  unsigned char *count;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &count));
+  CountUnknowns(map, count);
+  PetscCall(EqmLevelSystemCreate(map->level, count, &newton.system));
+  PetscCall(PetscFree(count));
+  for (PetscInt k = 0; k < 2; k++) PetscCall(PetscMalloc1(length, &newton.trial[k]));
+  for (PetscInt k = 0; k < options->most_steps && value.folds == 0 && newton.damping < hopeless; k++) {
+    const PetscReal before = value.objective;
+    PetscReal t = 0.;
+    PetscBool success;
+    PetscCall(Assemble(&newton, value.residual));
+    if (coarser > 0)
+      PetscCall(MultigridSolve(&newton, &success));
+    else
+      PetscCall(EqmLevelSystemFactorSolve(&newton.system, &success));
+    if (success) PetscCall(Search(&newton, &value, &t));
+    newton.damping = NextDamping(newton.damping, t);
+    if (t >= .99 && before - value.objective < options->gain * before) break;
+  }
+  for (PetscInt k = 0; k < 2; k++) PetscCall(PetscFree(newton.trial[k]));
+  PetscCall(EqmLevelSystemDestroy(&newton.system));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,32 @@
+#ifndef EQM_BALANCE_H
+#define EQM_BALANCE_H
+
+#include "hierarchy/levelmap.h"
+
+/* Places of inner vertices of a planar map at the mean of their neighbours', boundary vertices held: no fold where the
+   boundary's image is convex and no edge joins two vertices of one side (Tutte 1963). Not collective. */
+PETSC_INTERN PetscErrorCode EqmTutteLevel(EqmLevelMap *map);
+typedef struct {
+  PetscInt most_steps;
+  PetscReal gain;      /* enough where a whole step gains less than that part of the objective */
+  PetscReal tolerance; /* of the linear systems, where they are not factored */
+  PetscReal damping;   /* at first */
+} EqmBalanceOptions;
+
+/* Bring the objective towards its minimum by Gauss-Newton steps, each of which keeps the map free of folds. `map` is
+   followed by those of `coarser` ever coarser levels, which multigrid uses and whose places it sets; without any the
+   matrices are factored. Not collective. */
+PETSC_INTERN PetscErrorCode EqmBalanceLevel(EqmLevelMap *map, PetscInt coarser, const EqmBalanceOptions *options);
+
+/* For tests: matrix (6 x 6, row by row) and half the negative gradient of one cell's part of the objective in the
+   directions of its corners' frames, `frame` 6 per corner; `size` of them in `unknown` order. */
+typedef struct {
+  PetscInt count[3];     /* directions per corner */
+  PetscReal frame[3][6]; /* of EqmMotionFrame */
+  PetscReal matrix[36], right[6];
+} EqmCellSystem;
+/* `damping`: factor of the residual-weighted Laplacian; `floor`: what is added to |rho| there. Not collective. */
+PETSC_INTERN void EqmBalanceCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, PetscReal floor,
+                                 EqmCellSystem *system);
+
+#endif

@@ -1,0 +1,159 @@
+/* From the coarsest level to the finest. */
+#include "hierarchy/balance.h"
+#include "hierarchy/reinsert.h"
+
+PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options)
+{
+  PetscFunctionBegin;
+  *options = (EqmCascadeOptions){.epsilon = .1,
+                                 .epsilon_finest = .1,
+                                 .sweeps = 6,
+                                 .steps = 1,
+                                 .direct = 1500,
+                                 .coarsest = 1000,
+                                 .trace = PETSC_FALSE};
+  PetscFunctionReturn(0);
+}
+
+static const PetscReal epsilon_coarsest = .1;
+
+/* The first four vertices on the sphere, as the corners of a regular tetrahedron; the rest comes by reinsertion. */
+static PetscErrorCode PlaceTetrahedron(EqmLevelMap *map)
+{
+  static const signed char corner[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 12; k++) map->x[k] = corner[k / 3][k % 3] / PetscSqrtReal(3.);
+  if (EqmLevelMapLook(map, map->x).folds > 0) {
+    for (PetscInt v = 0; v < 4; v++) map->x[3 * v] *= -1.;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* To the minimum, with more weight on the angles first. */
+static PetscErrorCode BalanceCoarsest(EqmLevelMap *map, const EqmCascadeOptions *options)
+{
+  const EqmBalanceOptions steps = {.most_steps = 60, .gain = 1e-3, .damping = .1};
+
+  PetscFunctionBegin;
+  map->epsilon = PetscMax(epsilon_coarsest, options->epsilon);
+  PetscCall(EqmBalanceLevel(map, 0, &steps));
+  map->epsilon = options->epsilon;
+  PetscCall(EqmBalanceLevel(map, 0, &steps));
+  PetscFunctionReturn(0);
+}
+
+/* Map one of the coarsest levels. Planar: the finest of them, for coarser ones have more ways to go wrong, but Tutte's
+   map shrinks limbs until arithmetic loses them. Returns which. */
+static PetscErrorCode MapCoarsest(EqmLevelMap *map, PetscInt last, const EqmCascadeOptions *options, PetscInt *which)
+{
+  PetscInt k = last;
+
+  PetscFunctionBegin;
+  if (map[last].dim == 3) {
+    PetscCall(PlaceTetrahedron(&map[last]));
+  } else {
+    while (k > 0 && map[k - 1].level->num_vertices <= options->coarsest) k--;
+    for (; k <= last; k++) {
+      PetscCall(EqmTutteLevel(&map[k]));
+      if (EqmLevelMapLook(&map[k], map[k].x).folds == 0 || k == last) break;
+    }
+  }
+  PetscCall(BalanceCoarsest(&map[k], options));
+  *which = k;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Show(const EqmCascadeOptions *options, EqmLevelMap *map, const char *what, PetscInt count)
+{
+  EqmLevelValue value;
+
+  PetscFunctionBegin;
+  if (!options->trace) PetscFunctionReturn(0);
+  value = EqmLevelMapLook(map, map->x);
+  PetscCall(PetscPrintf(PETSC_COMM_SELF,
+                        "  %8" PetscInt_FMT " vertices, %-12s %5" PetscInt_FMT
+                        ": energy %.3e, objective %.3e, folds %" PetscInt_FMT ", worst quality %.2g\n",
+                        map->level->num_vertices, what, count, (double)value.energy, (double)value.objective,
+                        value.folds, (double)EqmLevelWorstQuality(map->level)));
+  PetscFunctionReturn(0);
+}
+
+/* How many of the next coarser levels multigrid needs; none where the level is small enough to be factored. */
+static PetscInt LevelsBelow(const EqmLevelMap *map, PetscInt left, PetscInt direct)
+{
+  PetscInt k = 0;
+
+  while (k < left && map[k].level->num_vertices > direct) k++;
+  return k;
+}
+
+/* A level whose map has come back from the next coarser one; `left`: how many are below. */
+static PetscErrorCode RelaxLevel(EqmLevelMap *map, PetscInt left, const EqmCascadeOptions *options)
+{
+  enum { SWEEPS_AFTER = 2, MOST_STEPS = 60, WORK = 1000000 };
+  const PetscInt below = LevelsBelow(map, left, options->direct);
+  const EqmBalanceOptions direct = {.most_steps = PetscMin(MOST_STEPS, WORK / map->level->num_vertices + 1),
+                                    .gain = 1e-3,
+                                    .damping = .1},
+                          multigrid = {.most_steps = options->steps, .gain = 1e-2, .damping = .03, .tolerance = .1};
+  EqmLevelStars stars;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLevelStarsCreate(map->level, &stars));
+  for (PetscInt s = 0; s < options->sweeps; s += 2) {
+    EqmLevelMapLook(map, map->x);
+    PetscCall(EqmRelaxLevel(map, &stars, PetscMin(2, options->sweeps - s)));
+  }
+  PetscCall(Show(options, map, "sweeps", options->sweeps));
+  PetscCall(EqmBalanceLevel(map, below, below > 0 ? &multigrid : &direct));
+  PetscCall(Show(options, map, "steps", below));
+  PetscCall(EqmRelaxLevel(map, &stars, SWEEPS_AFTER));
+  PetscCall(EqmLevelStarsDestroy(&stars));
+  PetscFunctionReturn(0);
+}
+
+/* On the first rank. */
+static PetscErrorCode CascadeLevels(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
+                                    PetscReal *x, EqmCascadeResult *result)
+{
+  const PetscInt last = hierarchy->num_levels - 1;
+  EqmLevelMap map[EQM_MOST_LEVELS];
+  EqmLevelValue value;
+  PetscInt coarsest;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k <= last; k++) {
+    PetscCall(EqmLevelMapCreate(&hierarchy->level[k], target, &map[k]));
+    if (k == 0) {
+      PetscCall(PetscArraycpy(map[0].x, x, map[0].dim * hierarchy->level[0].num_vertices));
+      PetscCall(EqmLevelMapSetMotions(&map[0], target));
+    } else {
+      PetscCall(EqmLevelMapRestrict(&map[k - 1], &map[k]));
+    }
+  }
+  PetscCall(MapCoarsest(map, last, options, &coarsest));
+  PetscCall(Show(options, &map[coarsest], "coarsest", 0));
+  for (PetscInt k = coarsest - 1; k >= 0; k--) {
+    PetscInt hard;
+    PetscCall(EqmReinsert(&map[k + 1], &map[k], &hard));
+    map[k].epsilon = k == 0 ? options->epsilon_finest : options->epsilon;
+    PetscCall(Show(options, &map[k], "reinserted", hard));
+    PetscCall(RelaxLevel(&map[k], last - k, options));
+  }
+  value = EqmLevelMapLook(&map[0], map[0].x);
+  *result = (EqmCascadeResult){.folds = value.folds, .energy = value.energy};
+  PetscCall(PetscArraycpy(x, map[0].x, map[0].dim * hierarchy->level[0].num_vertices));
+  for (PetscInt k = 0; k <= last; k++) PetscCall(EqmLevelMapDestroy(&map[k]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmCascade(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
+                          PetscReal *x, EqmCascadeResult *result)
+{
+  PetscFunctionBegin;
+  if (hierarchy->rank == 0) PetscCall(CascadeLevels(hierarchy, target, options, x, result));
+  PetscCallMPI(MPI_Bcast(&result->folds, 1, MPIU_INT, 0, hierarchy->comm));
+  PetscCallMPI(MPI_Bcast(&result->energy, 1, MPIU_REAL, 0, hierarchy->comm));
+  PetscFunctionReturn(0);
+}

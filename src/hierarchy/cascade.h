@@ -1,0 +1,33 @@
+/* Maps without folds at a cost that grows with the number of vertices: the coarsest level is mapped, vertices come back
+   level by level, and each level is relaxed. */
+#ifndef EQM_CASCADE_H
+#define EQM_CASCADE_H
+
+#include "hierarchy/hierarchy.h"
+
+typedef enum { EQM_TARGET_DISK, EQM_TARGET_SQUARE, EQM_TARGET_SPHERE } EqmCascadeTarget;
+
+typedef struct {
+  PetscReal epsilon;        /* weight of the angle energy on all levels but the finest */
+  PetscReal epsilon_finest; /* and on that */
+  PetscInt sweeps;          /* over the vertices of each level */
+  PetscInt steps;           /* Gauss-Newton steps by multigrid on each level */
+  PetscInt direct;          /* levels with no more vertices have their matrices factored */
+  PetscInt coarsest;        /* planar: a level with no more vertices is mapped first */
+  PetscBool trace;          /* print a line per level */
+} EqmCascadeOptions;
+
+typedef struct {
+  PetscInt folds; /* of the finest map: triangles that arithmetic cannot tell from folded ones included */
+  PetscReal energy;
+} EqmCascadeResult;
+
+PETSC_INTERN PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options);
+/* Map the surface to the target. `x`: two coordinates (sphere: three) per vertex of level 0; of the disk and the square
+   those of boundary vertices are set on entry, in the boundary's order: on the unit circle, on the sides of the unit
+   square with corners at the vertices that the hierarchy keeps as such. Works on the first rank; the result is known
+   to all. Collective. */
+PETSC_INTERN PetscErrorCode EqmCascade(EqmHierarchy hierarchy, EqmCascadeTarget target,
+                                       const EqmCascadeOptions *options, PetscReal *x, EqmCascadeResult *result);
+
+#endif

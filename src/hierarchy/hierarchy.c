@@ -1,0 +1,117 @@
+/* The hierarchy as a whole. */
+#include "hierarchy/level.h"
+#include "hierarchy/gather.h"
+#include "base/rows.h"
+
+PetscErrorCode EqmHierarchyOptionsDefault(EqmHierarchyOptions *options)
+{
+  PetscFunctionBegin;
+  *options = (EqmHierarchyOptions){.ratio = 2.5, .coarsest = 4, .boundary_share = 1.5, .corner = NULL};
+  PetscFunctionReturn(0);
+}
+
+/* A circle cut at b places leaves segments of (2 pi / b)^3 / 12; half a triangle is pi / (2 m). */
+static PetscInt LeastBoundary(PetscInt num_cells, PetscReal share)
+{
+  return (PetscInt)(share * 2. * PETSC_PI / PetscPowReal(12. * PETSC_PI / num_cells, 1. / 3.));
+}
+
+static PetscErrorCode MakeLevels(EqmHierarchy hierarchy, const EqmHierarchyOptions *options)
+{
+  EqmHierarchyLevel *const level = hierarchy->level;
+  const PetscInt least_boundary = LeastBoundary(level[0].num_cells, options->boundary_share);
+  const PetscReal no_progress = .95;
+  PetscReal quality = .3;
+
+  PetscFunctionBegin;
+  hierarchy->num_levels = 1;
+  while (hierarchy->num_levels < EQM_MOST_LEVELS && level[hierarchy->num_levels - 1].num_vertices > options->coarsest) {
+    EqmHierarchyLevel *const finer = &level[hierarchy->num_levels - 1], *const coarser = finer + 1;
+    PetscCall(EqmDecimate(finer, options->ratio, least_boundary, &quality, coarser));
+    if (finer->num_collapses == 0) break;
+    hierarchy->num_levels++;
+    if (coarser->num_vertices > no_progress * finer->num_vertices) break;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHierarchyCreate(EqmMesh mesh, const EqmHierarchyOptions *options, EqmHierarchy *out)
+{
+  EqmHierarchy hierarchy;
+
+  PetscFunctionBegin;
+  PetscCheck(mesh->cell_size == 3, mesh->comm, EQM_ERR_USAGE, "a hierarchy is of a surface, not of a solid");
+  PetscCall(PetscNew(&hierarchy));
+  hierarchy->comm = mesh->comm;
+  hierarchy->rank = mesh->rank;
+  hierarchy->num_owned = mesh->num_owned;
+  PetscCall(EqmGatherFinest(mesh, options->corner, hierarchy));
+  if (mesh->rank == 0) PetscCall(MakeLevels(hierarchy, options));
+  *out = hierarchy;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHierarchyDestroy(EqmHierarchy *hierarchy)
+{
+  PetscFunctionBegin;
+  if (!*hierarchy) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < EQM_MOST_LEVELS; k++) {
+    EqmHierarchyLevel *const level = &(*hierarchy)->level[k];
+    PetscCall(PetscFree(level->cells));
+    PetscCall(PetscFree(level->weight));
+    PetscCall(PetscFree(level->position));
+    PetscCall(PetscFree(level->part));
+    PetscCall(PetscFree(level->finer));
+    PetscCall(PetscFree(level->collapse));
+    PetscCall(PetscFree(level->ring));
+    PetscCall(PetscFree(level->ring_weight));
+  }
+  PetscCall(PetscFree((*hierarchy)->order));
+  PetscCall(PetscFree(*hierarchy));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHierarchyMemory(EqmHierarchy hierarchy, PetscInt64 *bytes)
+{
+  const size_t per_vertex = 3 * sizeof(PetscReal) + sizeof(unsigned char) + sizeof(PetscInt),
+               per_cell = 3 * sizeof(PetscInt) + sizeof(PetscReal), per_ring = sizeof(PetscInt) + sizeof(PetscReal);
+
+  PetscFunctionBegin;
+  *bytes = 0;
+  for (PetscInt k = 0; k < hierarchy->num_levels; k++) {
+    const EqmHierarchyLevel *const level = &hierarchy->level[k];
+    *bytes += (PetscInt64)(per_vertex * level->num_vertices + per_cell * level->num_cells +
+                           per_ring * level->ring_length + sizeof(*level->collapse) * level->num_collapses);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHierarchyGather(EqmHierarchy hierarchy, PetscInt width, const PetscReal *owned, PetscReal *finest)
+{
+  const PetscInt n = hierarchy->rank == 0 ? hierarchy->level[0].num_vertices : 0;
+
+  PetscFunctionBegin;
+  PetscCall(EqmFetchRows(hierarchy->comm, hierarchy->num_owned, n, hierarchy->order, MPIU_REAL, width, owned, finest));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHierarchyScatter(EqmHierarchy hierarchy, PetscInt width, const PetscReal *finest, PetscReal *owned)
+{
+  const PetscInt n = hierarchy->rank == 0 ? hierarchy->level[0].num_vertices : 0;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPutRows(hierarchy->comm, hierarchy->num_owned, n, hierarchy->order, MPIU_REAL, width, finest, owned));
+  PetscFunctionReturn(0);
+}
+
+PetscReal EqmLevelWorstQuality(const EqmHierarchyLevel *level)
+{
+  PetscReal worst = 1., normal[3];
+
+  for (PetscInt c = 0; c < level->num_cells; c++) {
+    const PetscInt *const v = level->cells + 3 * c;
+    worst = PetscMin(worst, EqmTriangleQuality(level->position + 3 * v[0], level->position + 3 * v[1],
+                                               level->position + 3 * v[2], normal));
+  }
+  return worst;
+}

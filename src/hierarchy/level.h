@@ -1,0 +1,44 @@
+/* What the files of this folder share: stars of vertices, shapes of triangles, one step of decimation. */
+#ifndef EQM_LEVEL_H
+#define EQM_LEVEL_H
+
+#include "hierarchy/hierarchy.h"
+#include "geometry/simplex.h"
+
+/* Triangles around each vertex: corner[start[v]] .. are 3 cell + the corner at which v is. */
+typedef struct {
+  PetscInt *start, *corner;
+} EqmCorners;
+PETSC_INTERN PetscErrorCode EqmCornersCreate(PetscInt num_vertices, PetscInt num_cells, const PetscInt *cells,
+                                             EqmCorners *corners);
+PETSC_INTERN PetscErrorCode EqmCornersDestroy(EqmCorners *corners);
+
+/* A triangle of a star without its centre: from one vertex of the ring to the next. */
+typedef struct {
+  PetscInt from, to, cell;
+} EqmSpoke;
+/* Put the triangles of a star in their order around the centre; of an open star the first begins at the boundary.
+   `place`, per vertex of the mesh, is scratch of zeros and is left so. False where the triangles are not one fan. Not
+   collective. */
+PETSC_INTERN PetscBool EqmOrderSpokes(PetscInt count, EqmSpoke *spoke, EqmSpoke *scratch, PetscInt *place,
+                                      PetscBool *closed);
+
+/* 4 sqrt(3) area / (sum of squared edges) and twice the area's vector. */
+static inline PetscReal EqmTriangleQuality(const PetscReal *p, const PetscReal *q, const PetscReal *r,
+                                           PetscReal normal[3])
+{
+  const PetscReal u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]},
+                  w[3] = {r[0] - q[0], r[1] - q[1], r[2] - q[2]};
+  const PetscReal squares = EqmDot3(u, u) + EqmDot3(v, v) + EqmDot3(w, w);
+
+  EqmCross(u, v, normal);
+  return squares > 0. ? 2. * PetscSqrtReal(3. * EqmDot3(normal, normal)) / squares : 0.;
+}
+
+/* Collapse edges of `finer` until its vertices are fewer by options->ratio; `quality`: the least quality of new
+   triangles, halved where it is in the way. Fills the records of `finer` and all of `coarser` (but its records). Not
+   collective. */
+PETSC_INTERN PetscErrorCode EqmDecimate(EqmHierarchyLevel *finer, PetscReal ratio, PetscInt least_boundary,
+                                        PetscReal *quality, EqmHierarchyLevel *coarser);
+
+#endif

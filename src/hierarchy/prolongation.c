@@ -1,0 +1,190 @@
+/* From motions of a coarser level to those of a finer one. */
+#include "hierarchy/prolongation.h"
+
+enum { WIDTH = 3, MOST_CANDIDATES = 10, MOST_SEEN = WIDTH * EQM_MOST_RECORD };
+
+/* Coarse vertices, by their numbers on the finer level, and their weights. */
+typedef struct {
+  PetscInt count, vertex[WIDTH];
+  PetscReal weight[WIDTH];
+} Row;
+
+/* The place with a third coordinate: weights that give it back add up to one in the plane. */
+static void Lift(const EqmLevelMap *map, PetscInt v, PetscReal place[3])
+{
+  for (PetscInt c = 0; c < 3; c++) place[c] = c < map->dim ? map->x[map->dim * v + c] : 1.;
+}
+
+static PetscReal SquaredDistance(const PetscReal *p, const PetscReal *q)
+{
+  return PetscSqr(p[0] - q[0]) + PetscSqr(p[1] - q[1]) + PetscSqr(p[2] - q[2]);
+}
+
+/* The coarse vertices that the ring's rows have, the nearest ones; returns how many. */
+static PetscInt Candidates(const EqmLevelMap *map, const EqmCollapse *record, const Row *rows, PetscInt *candidate)
+{
+  const PetscInt *const ring = map->level->ring + record->start;
+  PetscReal distance[MOST_SEEN], x[3], y[3];
+  PetscInt n = 0;
+
+  Lift(map, record->vertex, x);
+  for (PetscInt k = 0; k < record->size; k++) {
+    for (PetscInt j = 0; j < rows[ring[k]].count; j++) {
+      const PetscInt c = rows[ring[k]].vertex[j];
+      PetscInt at = 0;
+      while (at < n && candidate[at] != c) at++;
+      if (at < n) continue;
+      Lift(map, c, y);
+      const PetscReal d = SquaredDistance(x, y);
+      for (at = n++; at > 0 && distance[at - 1] > d; at--) {
+        distance[at] = distance[at - 1];
+        candidate[at] = candidate[at - 1];
+      }
+      distance[at] = d;
+      candidate[at] = c;
+    }
+  }
+  return PetscMin(n, MOST_CANDIDATES);
+}
+
+/* The triangle of candidates around x, or the one that x is least outside of, with the least mean squared distance. */
+static PetscReal BestTriple(const PetscReal x[3], PetscInt n, const PetscInt *candidate, PetscReal (*place)[3],
+                            Row *row)
+{
+  const PetscReal edge = -1e-9;
+  PetscReal nearest = PETSC_MAX_REAL, inside = -PETSC_MAX_REAL;
+
+  row->count = 0;
+  for (PetscInt a = 0; a < n; a++) {
+    for (PetscInt b = a + 1; b < n; b++) {
+      PetscReal ab[3], along;
+      EqmCross(place[a], place[b], ab);
+      along = EqmDot3(ab, x);
+      for (PetscInt c = b + 1; c < n; c++) {
+        const PetscReal det = EqmDot3(ab, place[c]);
+        PetscReal bc[3], ca[3], w[3], least, spread;
+        if (det == 0.) continue;
+        EqmCross(place[b], place[c], bc);
+        EqmCross(place[c], place[a], ca);
+        w[0] = EqmDot3(bc, x) / det;
+        w[1] = EqmDot3(ca, x) / det;
+        w[2] = along / det;
+        least = PetscMin(w[0], PetscMin(w[1], w[2]));
+        spread = w[0] * SquaredDistance(x, place[a]) + w[1] * SquaredDistance(x, place[b]) +
+                 w[2] * SquaredDistance(x, place[c]);
+        if (least >= edge ? spread >= nearest : nearest < PETSC_MAX_REAL || least <= inside) continue;
+        if (least >= edge) nearest = spread;
+        inside = PetscMax(inside, least);
+        *row = (Row){.count = 3, .vertex = {candidate[a], candidate[b], candidate[c]}, .weight = {w[0], w[1], w[2]}};
+      }
+    }
+  }
+  return inside;
+}
+
+static void InsideRow(const EqmLevelMap *map, const EqmCollapse *record, const Row *rows, Row *row)
+{
+  const PetscReal too_far = -.5;
+  PetscInt candidate[MOST_SEEN];
+  PetscReal place[MOST_CANDIDATES][3], x[3];
+  const PetscInt n = Candidates(map, record, rows, candidate);
+
+  Lift(map, record->vertex, x);
+  for (PetscInt k = 0; k < n; k++) Lift(map, candidate[k], place[k]);
+  if (BestTriple(x, n, candidate, place, row) < too_far || row->count == 0)
+    *row = (Row){.count = 1, .vertex = {candidate[0]}, .weight = {1.}};
+}
+
+/* How far y lies behind x along the boundary: an angle, or a length of the side. */
+static PetscReal Along(const EqmLevelMap *map, EqmMotion motion, PetscInt x, PetscInt y)
+{
+  const PetscReal *const p = map->x + 2 * x, *const q = map->x + 2 * y;
+
+  if (motion == EQM_MOVE_CIRCLE) return PetscAtan2Real(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]);
+  return motion == EQM_MOVE_SIDE_X ? q[0] - p[0] : q[1] - p[1];
+}
+
+/* Of a boundary vertex: the nearest coarse ones on either side, linear between them. */
+static void BoundaryRow(const EqmLevelMap *map, const EqmCollapse *record, const Row *rows, Row *row)
+{
+  const PetscInt *const ring = map->level->ring + record->start, end[2] = {ring[0], ring[record->size - 1]};
+  const EqmMotion motion = (EqmMotion)map->motion[record->vertex];
+  PetscReal distance[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL};
+  PetscInt vertex[2] = {-1, -1};
+
+  for (PetscInt e = 0; e < 2; e++) {
+    for (PetscInt j = 0; j < rows[end[e]].count; j++) {
+      const PetscInt c = rows[end[e]].vertex[j];
+      const PetscReal d = Along(map, motion, record->vertex, c);
+      if (PetscAbsReal(d) >= distance[d < 0.]) continue;
+      distance[d < 0.] = PetscAbsReal(d);
+      vertex[d < 0.] = c;
+    }
+  }
+  if (vertex[0] < 0 || vertex[1] < 0) {
+    *row = (Row){.count = 1, .vertex = {PetscMax(vertex[0], vertex[1])}, .weight = {1.}};
+    return;
+  }
+  const PetscReal all = distance[0] + distance[1], share = all > 0. ? distance[1] / all : .5;
+  *row = (Row){.count = 2, .vertex = {vertex[0], vertex[1]}, .weight = {share, 1. - share}};
+}
+
+static PetscErrorCode MakeRows(const EqmLevelMap *finer, const EqmLevelMap *coarser, Row *rows)
+{
+  const EqmHierarchyLevel *const level = finer->level;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < coarser->level->num_vertices; c++) {
+    const PetscInt v = coarser->level->finer[c];
+    rows[v] = (Row){.count = 1, .vertex = {v}, .weight = {1.}};
+  }
+  for (PetscInt k = level->num_collapses; k-- > 0;) {
+    const EqmCollapse *const record = &level->collapse[k];
+    (level->part[record->vertex] == EQM_INSIDE ? InsideRow : BoundaryRow)(finer, record, rows, &rows[record->vertex]);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A fine vertex's entries: the weight times the product of the frames; along the boundary the weight alone, so that a
+   rotation comes out exact. */
+static PetscErrorCode SetRows(const EqmLevelMap *map, PetscInt v, const Row *row, const PetscInt *number,
+                              const PetscInt *first_finer, const PetscInt *first_coarser, Mat prolongation)
+{
+  PetscReal to[6], from[6];
+  const PetscInt dim = map->dim, count = EqmMotionFrame((EqmMotion)map->motion[v], map->x + dim * v, to);
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < row->count; j++) {
+    const PetscInt u = row->vertex[j], moves = EqmMotionFrame((EqmMotion)map->motion[u], map->x + dim * u, from);
+    for (PetscInt k = 0; k < count; k++) {
+      for (PetscInt l = 0; l < moves; l++) {
+        PetscReal product = 0.;
+        for (PetscInt c = 0; c < dim; c++) product += to[dim * k + c] * from[dim * l + c];
+        if (count == 1) product = 1.;
+        PetscCall(MatSetValue(prolongation, first_finer[v] + k, first_coarser[number[u]] + l, row->weight[j] * product,
+                              INSERT_VALUES));
+      }
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap *coarser, const PetscInt *first_finer,
+                                     const PetscInt *first_coarser, Mat *prolongation)
+{
+  const PetscInt n = finer->level->num_vertices, m = coarser->level->num_vertices;
+  PetscInt *number;
+  Row *rows;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(n, &number, n, &rows));
+  for (PetscInt c = 0; c < m; c++) number[coarser->level->finer[c]] = c;
+  PetscCall(MakeRows(finer, coarser, rows));
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, first_finer[n], first_coarser[m], 2 * WIDTH, NULL, prolongation));
+  for (PetscInt v = 0; v < n; v++)
+    PetscCall(SetRows(finer, v, &rows[v], number, first_finer, first_coarser, *prolongation));
+  PetscCall(MatAssemblyBegin(*prolongation, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*prolongation, MAT_FINAL_ASSEMBLY));
+  PetscCall(PetscFree2(number, rows));
+  PetscFunctionReturn(0);
+}
