@@ -29,6 +29,17 @@ typedef struct {
   PetscReal cell_sd_without;         /* standard deviation over all other cells, unweighted */
 } EqmWeightedRatio;
 
+/* Bins of the histogram of ratios: equal ones from 1 - reach to 1 + reach, with the first and the last for what lies
+   below and above. `reach` is 10 weighted standard deviations, rounded up to 1, 2 or 5 times a power of ten, at least
+   1e-12. */
+enum { EQM_NUM_RATIO_BINS = 202 };
+
+typedef struct {
+  PetscReal reach;
+  PetscInt64 cells[EQM_NUM_RATIO_BINS]; /* how many cells have a ratio in the bin */
+  PetscReal share[EQM_NUM_RATIO_BINS];  /* their share of the mesh's measure */
+} EqmRatioHistogram;
+
 /* Bins of the histogram of angle errors, a quarter of a degree each. */
 enum { EQM_NUM_ANGLE_BINS = 720 };
 
@@ -40,6 +51,7 @@ typedef struct {
   EqmStatistics ratio;                            /* r = (a/w) (W/A) */
   EqmStatistics ratio_error;                      /* |r - 1| */
   EqmWeightedRatio weighted_ratio;                /* r, weighted by w */
+  EqmRatioHistogram ratio_histogram;              /* r, by cells and by w */
   EqmStatistics angle_error;                      /* degrees per corner; p50 is the median; triangles only */
   PetscInt64 angle_histogram[EQM_NUM_ANGLE_BINS]; /* corners whose angle error lies in the bin; triangles only */
   EqmStatistics quasiconformal;                   /* ratio of singular values, >= 1; triangles only */
@@ -86,9 +98,9 @@ PETSC_EXTERN PetscErrorCode EqmMapOntoInput(EqmMap repaired, EqmSoup input, cons
 /* EqmMapAddPrepared - note a step of the preparation that changed the input: `count` things, and `what` in words, for
    the summary's list `prepared` and the result file's attribute of that name. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmMapAddPrepared(EqmMap map, const char *step, PetscInt64 count, const char *what);
-/* EqmMapRead - read the map of the mesh `soup` from a file: a result (.h5, /map/coordinates), a mesh of any format whose
-   vertices are the images (or, if they repeat the mesh, its texture coordinates), a CSV or NPY file with two or three
-   coordinates per vertex; with one z everywhere it is a planar map. Ratios and distortion stay zero until
+/* EqmMapRead - read the map of the mesh `soup` from a file: a result (.h5, /map/coordinates), a mesh of any format
+   whose vertices are the images (or, if they repeat the mesh, its texture coordinates), a CSV or NPY file with two or
+   three coordinates per vertex; with one z everywhere it is a planar map. Ratios and distortion stay zero until
    EqmMapMeasure. Collective. Errors: EQM_ERR_IO, EQM_ERR_MESH (the vertex counts differ). */
 PETSC_EXTERN PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *map);
 /* EqmMapMeasure - compute distortion, ratios and folds of `map` from coordinates alone.
@@ -158,15 +170,15 @@ PETSC_EXTERN PetscErrorCode EqmMapAddText(EqmMap map, const char *key, const cha
 /* ---- files */
 
 /* EqmMapWrite - write a result to every name in the comma-separated `files`, the format by suffix. .h5 holds everything
-   and gets .xmf files for ParaView beside it; the mesh formats hold the mesh with its vertices at their images (z = 0 for
-   planar maps) and, where the format can, the fields; NAME.vtu gets NAME.surface.vtu beside it, which holds the input
-   mesh with the map as fields. Each file appears whole or not at all, and one that was there
-   survives a failure. Collective. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. */
+   and gets .xmf files for ParaView beside it; the mesh formats hold the mesh with its vertices at their images (z = 0
+   for planar maps) and, where the format can, the fields; NAME.vtu gets NAME.surface.vtu beside it, which holds the
+   input mesh with the map as fields. Each file appears whole or not at all, and one that was there survives a failure.
+   Collective. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWrite(EqmMap map, const char *files);
 /* EqmMapWriteTexture - write the surface itself with its map as texture coordinates, to OBJ or PLY.
 
-   Collective. The unit disk goes to the square [0, 1]^2 by (1 + x)/2, the unit square is the texture as it is; a point of
-   the sphere has its longitude and latitude, each in [0, 1], and triangles that the seam runs through have corners
+   Collective. The unit disk goes to the square [0, 1]^2 by (1 + x)/2, the unit square is the texture as it is; a point
+   of the sphere has its longitude and latitude, each in [0, 1], and triangles that the seam runs through have corners
    beyond 1. Errors: EQM_ERR_USAGE (another format, a solid), EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteTexture(EqmMap map, const char *file);
 /* EqmMapCheckWritable - can `files` be written? For before a long run. Suffixes must be known, directories there and
@@ -183,5 +195,9 @@ PETSC_EXTERN PetscErrorCode EqmMapWriteHistory(EqmMap map, const char *file);
 /* EqmMapWriteHistogram - the histogram of angle errors as CSV: from, to (degrees), corners. Collective; rank 0 writes.
    Errors: EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteHistogram(EqmMap map, const char *file);
+/* EqmMapWriteRatioHistogram - the histogram of the ratios as CSV: from, to, cells, share (of the mesh's measure). The
+   first bin begins at the smallest ratio, the last ends at the largest. Collective; rank 0 writes. Errors: EQM_ERR_IO.
+ */
+PETSC_EXTERN PetscErrorCode EqmMapWriteRatioHistogram(EqmMap map, const char *file);
 
 #endif

@@ -9,9 +9,10 @@
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN], history[PETSC_MAX_PATH_LEN],
-      density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN], checkpoint[PETSC_MAX_PATH_LEN],
-      restart[PETSC_MAX_PATH_LEN], uv[PETSC_MAX_PATH_LEN];
-  PetscBool has_uv, has_output, has_summary, has_history, has_density, has_histogram, has_checkpoint, has_restart;
+      density[PETSC_MAX_PATH_LEN], histogram[PETSC_MAX_PATH_LEN], ratios[PETSC_MAX_PATH_LEN],
+      checkpoint[PETSC_MAX_PATH_LEN], restart[PETSC_MAX_PATH_LEN], uv[PETSC_MAX_PATH_LEN];
+  PetscBool has_uv, has_output, has_summary, has_history, has_density, has_histogram, has_ratios, has_checkpoint,
+      has_restart;
   EqmIntakeOptions input;
   EqmStopFile stop_file;
   char usage[PETSC_MAX_PATH_LEN];
@@ -39,6 +40,8 @@ static PetscErrorCode AskOptions(MapOptions *options)
                                sizeof(options->history), &options->has_history));
   PetscCall(PetscOptionsString("-histogram", "write the histogram of angle errors as CSV", NULL, "", options->histogram,
                                sizeof(options->histogram), &options->has_histogram));
+  PetscCall(PetscOptionsString("-ratio_histogram", "write the histogram of the ratios as CSV", NULL, "",
+                               options->ratios, sizeof(options->ratios), &options->has_ratios));
   PetscCall(PetscOptionsString(
       "-density",
       "a positive weight per cell (CSV with a header, or /cell/density of an HDF5 file): keep mass instead of area",
@@ -112,6 +115,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   if (options->has_summary) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->summary));
   if (options->has_history) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->history));
   if (options->has_histogram) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->histogram));
+  if (options->has_ratios) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->ratios));
   if (!options->has_checkpoint) PetscFunctionReturn(0);
   PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->checkpoint));
   PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->output));
@@ -119,6 +123,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   if (options->has_summary) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->summary));
   if (options->has_history) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->history));
   if (options->has_histogram) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->histogram));
+  if (options->has_ratios) PetscCall(EqmSweepOutput(PETSC_COMM_WORLD, options->ratios));
   PetscFunctionReturn(0);
 }
 
@@ -134,6 +139,7 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
   if (options->has_uv && status != EQM_STATUS_STOPPED) PetscCall(EqmMapWriteTexture(map, options->uv));
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   if (options->has_histogram) PetscCall(EqmMapWriteHistogram(map, options->histogram));
+  if (options->has_ratios) PetscCall(EqmMapWriteRatioHistogram(map, options->ratios));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_WRITE));
   PetscCall(EqmMapSetCost(map, ledger));
   if (options->has_summary) PetscCall(EqmMapWriteSummary(map, options->summary));

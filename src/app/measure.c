@@ -9,7 +9,8 @@
 
 typedef struct {
   char output[PETSC_MAX_PATH_LEN], density[PETSC_MAX_PATH_LEN], summary[PETSC_MAX_PATH_LEN],
-      histogram[PETSC_MAX_PATH_LEN], cells[PETSC_MAX_PATH_LEN], vertices[PETSC_MAX_PATH_LEN];
+      histogram[PETSC_MAX_PATH_LEN], ratios[PETSC_MAX_PATH_LEN], cells[PETSC_MAX_PATH_LEN],
+      vertices[PETSC_MAX_PATH_LEN];
   EqmImageSource source;
 } MeasureOptions;
 
@@ -146,6 +147,7 @@ static PetscErrorCode Write(const MeasureOptions *options, Measured *m)
   if (options->output[0]) PetscCall(EqmMapWrite(m->map, options->output));
   if (options->summary[0]) PetscCall(EqmMapWriteSummary(m->map, options->summary));
   if (options->histogram[0]) PetscCall(EqmMapWriteHistogram(m->map, options->histogram));
+  if (options->ratios[0]) PetscCall(EqmMapWriteRatioHistogram(m->map, options->ratios));
   PetscFunctionReturn(0);
 }
 
@@ -273,6 +275,8 @@ static PetscErrorCode ReadOptions(MeasureOptions *options)
                                sizeof(options->summary), NULL));
   PetscCall(PetscOptionsString("-histogram", "write the histogram of angle errors as CSV", NULL, "", options->histogram,
                                sizeof(options->histogram), NULL));
+  PetscCall(PetscOptionsString("-ratio_histogram", "write the histogram of the ratios as CSV", NULL, "",
+                               options->ratios, sizeof(options->ratios), NULL));
   PetscOptionsEnd();
   options->source = (EqmImageSource)source;
   PetscFunctionReturn(0);
@@ -281,8 +285,8 @@ static PetscErrorCode ReadOptions(MeasureOptions *options)
 /* Refuse before the work what would be refused after it. */
 static PetscErrorCode CheckOutputs(const EqmCommandLine *line, const MeasureOptions *options)
 {
-  const char *const files[] = {options->output, options->cells, options->vertices, options->summary,
-                               options->histogram};
+  const char *const files[] = {options->output,  options->cells,     options->vertices,
+                               options->summary, options->histogram, options->ratios};
 
   PetscFunctionBegin;
   if (options->output[0]) PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));

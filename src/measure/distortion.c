@@ -103,6 +103,8 @@ PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x)
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) a[c] /= mesh->weight[c] * totals.total;
   PetscCall(StoreRatios(map, mesh, a));
   PetscCall(EqmWeightedRatioOf(mesh->comm, n, a, mesh->weight, &map->distortion.weighted_ratio));
+  PetscCall(EqmRatioHistogramOf(mesh->comm, n, a, mesh->weight, map->distortion.weighted_ratio.sd,
+                                &map->distortion.ratio_histogram));
   PetscCall(PetscArraycpy(sample, a, n));
   PetscCall(EqmStatisticsOf(mesh->comm, n, sample, &map->distortion.ratio));
   for (PetscInt c = 0; c < n; c++) sample[c] = PetscAbsReal(a[c] - 1.);

@@ -91,3 +91,34 @@ PetscErrorCode EqmWeightedRatioOf(MPI_Comm comm, PetscInt n, const PetscReal *ra
   PetscCall(CountOutliers(comm, n, ratio, weight, total, weighted));
   PetscFunctionReturn(0);
 }
+
+/* 1, 2 or 5 times a power of ten, not smaller than the value. */
+static PetscReal RoundUp(PetscReal value)
+{
+  const PetscReal power = PetscPowReal(10., PetscFloorReal(PetscLog10Real(value)));
+
+  if (value <= power) return power;
+  if (value <= 2. * power) return 2. * power;
+  return value <= 5. * power ? 5. * power : 10. * power;
+}
+
+PetscErrorCode EqmRatioHistogramOf(MPI_Comm comm, PetscInt n, const PetscReal *ratio, const PetscReal *weight,
+                                   PetscReal sd, EqmRatioHistogram *histogram)
+{
+  const PetscInt inner = EQM_NUM_RATIO_BINS - 2;
+  PetscReal total = 0.;
+
+  PetscFunctionBegin;
+  *histogram = (EqmRatioHistogram){.reach = RoundUp(PetscMax(outlier_reach * sd, 1e-12))};
+  for (PetscInt c = 0; c < n; c++) {
+    const PetscReal place = (ratio[c] - 1. + histogram->reach) / (2. * histogram->reach) * inner;
+    const PetscInt bin = place < 0. ? 0 : place >= inner ? EQM_NUM_RATIO_BINS - 1 : 1 + (PetscInt)place;
+    histogram->cells[bin]++;
+    histogram->share[bin] += weight[c];
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, histogram->cells, EQM_NUM_RATIO_BINS, MPIU_INT64, MPI_SUM, comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, histogram->share, EQM_NUM_RATIO_BINS, MPIU_REAL, MPIU_SUM, comm));
+  for (PetscInt k = 0; k < EQM_NUM_RATIO_BINS; k++) total += histogram->share[k];
+  for (PetscInt k = 0; k < EQM_NUM_RATIO_BINS && total > 0.; k++) histogram->share[k] /= total;
+  PetscFunctionReturn(0);
+}

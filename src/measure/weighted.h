@@ -9,4 +9,9 @@
 PETSC_INTERN PetscErrorCode EqmWeightedRatioOf(MPI_Comm comm, PetscInt n, const PetscReal *ratio,
                                                const PetscReal *weight, EqmWeightedRatio *weighted);
 
+/* The histogram of the ratios of n cells of this rank and of those of all others; `sd` is their weighted standard
+   deviation, which says how wide the bins are. Collective. */
+PETSC_INTERN PetscErrorCode EqmRatioHistogramOf(MPI_Comm comm, PetscInt n, const PetscReal *ratio,
+                                                const PetscReal *weight, PetscReal sd, EqmRatioHistogram *histogram);
+
 #endif

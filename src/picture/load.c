@@ -82,6 +82,54 @@ static PetscErrorCode LoadImages(EqmH5 h5, EqmResult *result)
   PetscFunctionReturn(0);
 }
 
+/* The points of B to which the landmarks belong: named by vertices of B, or by coordinates. */
+static PetscErrorCode LoadGoals(EqmH5 h5, EqmResult *result)
+{
+  const PetscInt n = result->num_landmarks;
+  PetscReal *vertices = NULL, *number = NULL;
+  PetscInt rows, count;
+  PetscBool named;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(3 * n, &result->landmark_goal));
+  PetscCall(EqmH5HasDataset(h5, "/register/landmarks/vertex_b", &named));
+  if (!named) {
+    PetscInt64 total, width;
+    PetscCall(EqmH5GetShape(h5, "/register/landmarks/point", &total, &width));
+    PetscCall(LoadReals(h5, "/register/landmarks/point", width, &count, &vertices));
+    for (PetscInt k = 0; k < n * PetscMin(width, 3) && count == n; k++)
+      result->landmark_goal[3 * (k / width) + k % width] = vertices[k];
+    PetscCall(PetscFree(vertices));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LoadReals(h5, "/register/landmarks/vertex_b", 0, &count, &number));
+  PetscCall(LoadReals(h5, "/mesh_b/vertices", 3, &rows, &vertices));
+  for (PetscInt k = 0; k < 3 * n && count == n; k++) {
+    const PetscReal v = number[k / 3];
+    if (v >= 0. && v < rows) result->landmark_goal[k] = vertices[3 * (PetscInt)v + k % 3];
+  }
+  PetscCall(PetscFree(number));
+  PetscCall(PetscFree(vertices));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LoadLandmarks(EqmH5 h5, EqmResult *result)
+{
+  PetscReal *number;
+  PetscBool has;
+
+  PetscFunctionBegin;
+  PetscCall(EqmH5HasDataset(h5, "/register/landmarks/vertex", &has));
+  if (!has) PetscFunctionReturn(0);
+  PetscCall(LoadReals(h5, "/register/landmarks/vertex", 0, &result->num_landmarks, &number));
+  PetscCall(PetscMalloc1(result->num_landmarks, &result->landmark));
+  for (PetscInt k = 0; k < result->num_landmarks; k++)
+    result->landmark[k] = (PetscInt)PetscClipInterval(number[k], 0., (PetscReal)result->num_vertices - 1.);
+  PetscCall(PetscFree(number));
+  PetscCall(LoadGoals(h5, result));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode LoadHistory(EqmH5 h5, EqmResult *result)
 {
   static const char *const paths[] = {"/history/iteration", "/history/energy", "/history/seconds",
@@ -189,6 +237,7 @@ static PetscErrorCode Fill(EqmH5 h5, EqmResult *result)
   PetscCall(LoadImages(h5, result));
   PetscCall(LoadCellValues(h5, result));
   PetscCall(LoadAngles(h5, result));
+  PetscCall(LoadLandmarks(h5, result));
   PetscCall(LoadHistory(h5, result));
   PetscFunctionReturn(0);
 }
@@ -217,6 +266,8 @@ PetscErrorCode EqmResultReset(EqmResult *result)
   PetscCall(PetscFree(result->images));
   PetscCall(PetscFree(result->target));
   PetscCall(PetscFree(result->distance));
+  PetscCall(PetscFree(result->landmark));
+  PetscCall(PetscFree(result->landmark_goal));
   PetscCall(PetscFree(result->cells));
   PetscCall(PetscFree(result->weight));
   PetscCall(PetscFree(result->quasi_conformal));

@@ -35,15 +35,17 @@ typedef struct {
   PetscReal energy_initial, energy_final, angle_mean, angle_median, seconds;
   PetscReal quasi_mean, quasi_median, quasi_max;
   PetscInt num_vertices, num_cells, cell_size, dim;
-  PetscReal *vertices;        /* 3 * num_vertices */
-  PetscReal *images;          /* 3 * num_vertices; planar maps have z = 0 */
-  PetscReal *target;          /* of a registration: where vertices lie in the target, 3 * num_vertices; else NULL */
-  PetscInt target_dim;        /* coordinates there */
-  PetscReal *distance;        /* of a registration: from a vertex to its point on B, per vertex; else NULL */
-  PetscInt *cells;            /* cell_size * num_cells */
-  PetscReal *weight;          /* per cell: measure, density included */
-  PetscReal *ratio;           /* per cell */
-  PetscReal *quasi_conformal; /* per cell; NULL: not known */
+  PetscReal *vertices; /* 3 * num_vertices */
+  PetscReal *images;   /* 3 * num_vertices; planar maps have z = 0 */
+  PetscReal *target;   /* of a registration: where vertices lie in the target, 3 * num_vertices; else NULL */
+  PetscInt target_dim; /* coordinates there */
+  PetscReal *distance; /* of a registration: from a vertex to its point on B, per vertex; else NULL */
+  PetscInt num_landmarks, *landmark; /* of a registration: vertices of A, */
+  PetscReal *landmark_goal;          /* and where they should go on B, 3 each */
+  PetscInt *cells;                   /* cell_size * num_cells */
+  PetscReal *weight;                 /* per cell: measure, density included */
+  PetscReal *ratio;                  /* per cell */
+  PetscReal *quasi_conformal;        /* per cell; NULL: not known */
   PetscBool has_angles;
   PetscInt64 angle_histogram[EQM_NUM_ANGLE_BINS];
   EqmStatistics ratio_statistics;

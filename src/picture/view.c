@@ -34,61 +34,6 @@ static EqmScene SceneOf(const EqmPage *page, const EqmResult *result, const EqmV
   return scene;
 }
 
-/* A ring around the place, its number beside it at `label`. */
-static void MarkPoint(cairo_t *cairo, double x, double y, double label, PetscInt cell)
-{
-  char text[32];
-
-  (void)snprintf(text, sizeof(text), "%" PetscInt_FMT, cell);
-  cairo_new_path(cairo);
-  cairo_set_line_width(cairo, 3.5);
-  cairo_set_source_rgb(cairo, 1, 1, 1);
-  cairo_arc(cairo, x, y, 5.0, 0.0, 2 * PETSC_PI);
-  cairo_stroke_preserve(cairo);
-  cairo_set_line_width(cairo, 1.4);
-  EqmSetInk(cairo, EQM_INK);
-  cairo_stroke(cairo);
-  cairo_set_source_rgba(cairo, 1, 1, 1, 0.75);
-  cairo_rectangle(cairo, x + 8, label - 6, EqmTextWidth(cairo, 11, PETSC_FALSE, text) + 4, 13);
-  cairo_fill(cairo);
-  EqmDrawText(cairo, x + 10, label + 4, 11, PETSC_FALSE, EQM_LEFT, EQM_INK, text);
-}
-
-/* Nothing in front of it: nearer in the raster by more than a hundredth of the picture. */
-static PetscBool IsSeen(const EqmRaster *raster, const double at[3])
-{
-  const int x = (int)at[0], y = (int)at[1];
-
-  if (x < 0 || y < 0 || x >= raster->size || y >= raster->size) return PETSC_FALSE;
-  return (PetscBool)(raster->depth[(size_t)y * (size_t)raster->size + (size_t)x] < at[2] + 0.01 * raster->size);
-}
-
-/* The worst cells with their numbers in the input, those that are seen. */
-static void DrawMarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, const EqmRaster *raster, EqmBox box)
-{
-  double place[EQM_NUM_MARKS][2];
-  int drawn = 0;
-
-  for (PetscInt m = 0; m < result->num_marks; m++) {
-    const PetscInt *const v = result->cells + result->cell_size * result->mark[m];
-    double centroid[3] = {0, 0, 0}, at[3];
-    for (PetscInt k = 0; k < 3 * result->cell_size; k++)
-      centroid[k % 3] += view->points[3 * v[k / 3] + k % 3] / result->cell_size;
-    EqmCameraProject(&view->camera, raster->size, centroid, at);
-    if (!IsSeen(raster, at)) continue;
-    const double x = box.x + at[0] * box.width / raster->size, y = box.y + at[1] * box.height / raster->size;
-    place[drawn][0] = x;
-    place[drawn][1] = y;
-    for (int k = 0; k < drawn; k++) { /* numbers do not hide each other */
-      if (fabs(place[k][0] - x) < 45 && fabs(place[k][1] - place[drawn][1]) < 14) {
-        place[drawn][1] = place[k][1] + 14;
-        k = -1;
-      }
-    }
-    MarkPoint(cairo, x, y, place[drawn++][1], result->mark[m]);
-  }
-}
-
 static PetscErrorCode PaintRaster(cairo_t *cairo, const EqmRaster *raster, const EqmScene *scene, EqmBox box, int size)
 {
   cairo_surface_t *const image = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size, size);
@@ -120,7 +65,8 @@ PetscErrorCode EqmPaintView(cairo_t *cairo, const EqmPage *page, const EqmResult
   PetscCall(EqmRasterCreate(OVERSAMPLING * size, &raster));
   PetscCall(EqmRasterDraw(&raster, &view->camera, view->faces, view->points, result->num_vertices));
   PetscCall(PaintRaster(cairo, &raster, &scene, box, size));
-  if (view->marked) DrawMarks(cairo, result, view, &raster, box);
+  if (view->marked) EqmDrawMarks(cairo, result, view, &raster, box);
+  if (view->landmarks) EqmDrawLandmarks(cairo, result, view, &raster, box);
   PetscCall(EqmRasterDestroy(&raster));
   PetscFunctionReturn(0);
 }

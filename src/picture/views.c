@@ -49,7 +49,7 @@ static PetscErrorCode AddView(const EqmResult *result, const char *title, const 
 
   PetscFunctionBegin;
   PetscCall(EqmFacesNormals(faces, points, result->num_vertices, normals));
-  row->view[row->count++] = (EqmView){title, faces, points, *normals, camera, paint, PETSC_FALSE};
+  row->view[row->count++] = (EqmView){title, faces, points, *normals, camera, paint, PETSC_FALSE, PETSC_FALSE};
   PetscFunctionReturn(0);
 }
 
@@ -82,8 +82,14 @@ static PetscErrorCode AddImage(const EqmResult *result, Row *row)
   PetscFunctionBegin;
   if (result->dim == 2) {
     EqmCameraFit(&flat, &row->surface, result->images);
-    row->view[row->count++] = (EqmView){
-        "Image, worst cells numbered", &row->surface, result->images, NULL, flat, EQM_PAINT_CELLS, PETSC_TRUE};
+    row->view[row->count++] = (EqmView){"Image, worst cells numbered",
+                                        &row->surface,
+                                        result->images,
+                                        NULL,
+                                        flat,
+                                        EQM_PAINT_CELLS,
+                                        PETSC_TRUE,
+                                        PETSC_FALSE};
     PetscFunctionReturn(0);
   }
   PetscCall(
@@ -139,6 +145,7 @@ static PetscErrorCode AddRegistered(const EqmResult *result, EqmCamera camera, R
   PetscCall(AddView(result, "The pattern carried to B", &row->surface, result->images, of_b, EQM_PAINT_PATTERN, row));
   PetscCall(AddView(result, result->distance ? "On B: the distance from A" : "A on B, coloured by ratio", &row->surface,
                     result->images, of_b, result->distance ? EQM_PAINT_DISTANCE : EQM_PAINT_CELLS, row));
+  row->view[1].landmarks = row->view[2].landmarks = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

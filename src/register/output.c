@@ -74,6 +74,32 @@ static PetscErrorCode AddLandmarkFigures(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
+/* The landmarks as their file lists them: vertices of A, and vertices of B or points. Rank 0 has them. */
+static PetscErrorCode AddLandmarks(EqmRegistration r)
+{
+  const EqmLandmarkList *const list = &r->landmarks;
+  PetscInt64 *vertex, *other;
+  PetscReal *point;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
+  const PetscInt count = rank == 0 ? list->num : 0;
+  PetscCall(PetscMalloc1(count, &vertex));
+  for (PetscInt k = 0; k < count; k++) vertex[k] = list->vertex[k];
+  PetscCall(EqmMapAddIntegers(r->map, "/register/landmarks/vertex", list->num, 0, count, 0, vertex));
+  if (list->width == 1) {
+    PetscCall(PetscMalloc1(count, &other));
+    for (PetscInt k = 0; k < count; k++) other[k] = (PetscInt64)list->other[k];
+    PetscCall(EqmMapAddIntegers(r->map, "/register/landmarks/vertex_b", list->num, 0, count, 0, other));
+  } else {
+    PetscCall(PetscMalloc1(list->width * count, &point));
+    PetscCall(PetscArraycpy(point, list->other, list->width * count));
+    PetscCall(EqmMapAddReals(r->map, "/register/landmarks/point", list->num, 0, count, list->width, point));
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode AddClamped(EqmRegistration r, const char *name, EqmLocation location)
 {
   char key[64];
@@ -132,6 +158,7 @@ PetscErrorCode EqmAddToResult(EqmRegistration r)
   PetscFunctionBegin;
   PetscCall(EqmMapAddText(r->map, "register.target", r->target));
   PetscCall(AddLandmarkFigures(r));
+  if (r->landmarks.num) PetscCall(AddLandmarks(r));
   PetscCall(AddReals(r, &r->a, "/register/target", r->dim, 0., r->a.x));
   if (r->bare) PetscFunctionReturn(0);
   PetscCall(AddFiguresOfB(r));

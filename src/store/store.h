@@ -15,9 +15,13 @@ PETSC_INTERN PetscErrorCode EqmCheckResultVersion(EqmH5 h5);
 PETSC_INTERN PetscBool EqmHasSuffix(const char *name, const char *suffix);
 /* NAME.h5 becomes NAME`suffix`; to any other name the suffix is appended. Not collective. */
 PETSC_INTERN PetscErrorCode EqmNameBeside(const char *file, const char *suffix, char *name, size_t length);
+/* The lower edge of a bin of the histogram of ratios; of bin EQM_NUM_RATIO_BINS, the upper edge of the last. Not
+   collective. */
+PETSC_INTERN PetscReal EqmRatioEdge(const EqmDistortion *distortion, PetscInt bin);
 /* Write the result file: everything about the map. Collective. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteResult(EqmMap map, const char *file);
-/* Write NAME.xmf, the mesh, and NAME.map.xmf, its image, beside the result NAME.h5 for ParaView. Collective; rank 0 writes. Errors: EQM_ERR_IO. */
+/* Write NAME.xmf, the mesh, and NAME.map.xmf, its image, beside the result NAME.h5 for ParaView. Collective; rank 0
+ * writes. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file);
 /* The array of the result file that holds the points of frame number %d of a morph. */
 #define EQM_FRAME_PATH "/morph/frame_%03" PetscInt_FMT

@@ -75,7 +75,12 @@ def check_kinds(run):
     run("report", "ball.h5", "-o", "ball.html", "-width", "600")
     assert "SD of r, by volume" in rows_of("ball.html") and rows_of("ball.html")["angle error, mean / median"] == ["–"]
     run("generate", "cap", "-n", "300", "-o", "cap.obj")
-    run("register", "hills.obj", "cap.obj", "-o", "pair.h5", expected=(0, 4, 5))
+    with open("pairs.csv", "w", encoding="utf-8") as file:
+        file.write("a,b\n40,60\n200,120\n")
+    run("register", "hills.obj", "cap.obj", "-landmarks", "pairs.csv", "-o", "pair.h5", expected=(0, 4, 5))
+    with h5py.File("pair.h5", "r") as file:
+        assert file["/register/landmarks/vertex"][...].tolist() == [40, 200]
+        assert file["/register/landmarks/vertex_b"][...].tolist() == [60, 120]
     run("report", "pair.h5", "-o", "pair.png", "-width", "600")
     check_png("pair.png", 600)
     pages = []

@@ -16,7 +16,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-from evaluate import boundary_edges, evaluate  # noqa: E402
+from evaluate import boundary_edges, evaluate, triangle_areas  # noqa: E402
 from meshes import read_obj, renumber, write_obj  # noqa: E402
 from program import Program  # noqa: E402
 
@@ -114,6 +114,21 @@ def check_vtu(program, name, points, fields):
         assert numpy.array_equal(arrays[field], values.ravel()), (name, field)
 
 
+def check_ratios(program, ratio, weight, summary):
+    """Every cell is in one bin of the histogram of ratios, with its share of the measure."""
+    with open(program.file("ratios.csv")) as stream:
+        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(stream)]
+    edges = numpy.array([row["from"] for row in rows] + [rows[-1]["to"]])
+    assert len(rows) == 202 and (numpy.diff(edges) >= 0).all() and [row["to"] for row in rows] == edges[1:].tolist()
+    assert 10 * summary["ratio_weighted"]["sd"] <= edges[-2] - 1 <= 25 * summary["ratio_weighted"]["sd"], edges[-2]
+    counts = numpy.array([row["cells"] for row in rows])
+    assert counts.sum() == len(ratio)
+    true, _ = numpy.histogram(ratio, edges)
+    assert numpy.abs(numpy.cumsum(true) - numpy.cumsum(counts)).max() <= 2  # rounding at an edge
+    shares, _ = numpy.histogram(ratio, edges, weights=weight / weight.sum())
+    assert numpy.abs(numpy.cumsum(shares) - numpy.cumsum([row["share"] for row in rows])).max() < 2e-3
+
+
 def check_xdmf(program, name):
     """Both files beside the result: what they name is there and has the shape that they say."""
     with h5py.File(program.file(name + ".h5"), "r") as result:
@@ -133,7 +148,7 @@ def check_run(program, command, mesh, vertices, cells, density, *options):
         program.write("density.csv", "cell,density\n" + "".join(f"{c},{value!r}\n" for c, value in enumerate(density.tolist())))
         options = (*options, "-density", "density.csv")
     result = program.succeed(command, mesh, "-o", "out.h5,out.obj,out.ply,out.vtu,out.off,out.msh,out.gii", "-summary", "out.json",
-                             "-history", "out.csv", "-quiet", *options, codes=(0, 4))
+                             "-history", "out.csv", "-ratio_histogram", "ratios.csv", "-quiet", *options, codes=(0, 4))
     image, truth, history = check_file(program.file("out.h5"), vertices, cells, density,
                                        lambda image: evaluate(vertices, cells, image, density))
     summary = json.loads(program.read("out.json"))
@@ -144,6 +159,7 @@ def check_run(program, command, mesh, vertices, cells, density, *options):
     check_target(command, image, cells)
     written, written_cells = read_obj(program.file("out.obj"))
     assert numpy.array_equal(written_cells, cells) and numpy.array_equal(written[:, :2], image) and not written[:, 2].any()
+    check_ratios(program, truth["cell_ratio"], triangle_areas(vertices, cells) * (1.0 if density is None else density), summary)
     check_xdmf(program, "out")
     check_vtu(program, "out.surface.vtu", vertices, {"u": image[:, 0], "v": image[:, 1], **fields_of(program)})
     check_vtu(program, "out.vtu", numpy.c_[image, numpy.zeros(len(image))], {"surface": vertices, **fields_of(program)})
