@@ -79,22 +79,31 @@ static void PrintSection(const EqmCatalogue *catalogue, int section)
   }
 }
 
-/* What the command says beside its options, with line breaks where a line is too long. */
+/* Does the line go on the paragraph before it? */
+static PetscBool GoesOn(const char *line)
+{
+  return (PetscBool)(*line && !strchr(" \n", *line) && strncmp(line, "usage:", 6));
+}
+
+/* What the command says beside its options. A paragraph that begins with too long a line is broken anew. */
 void EqmHelpNotes(const EqmCatalogue *catalogue)
 {
   const char *text = catalogue->notes ? catalogue->notes : "";
 
   while (*text) {
-    int length = (int)strcspn(text, "\n");
+    int length = (int)strcspn(text, "\n"), column = 0;
+    const PetscBool is_long = (PetscBool)(length > MARGIN + 3);
 
-    if (length > MARGIN + 3) {
-      length = MARGIN + 3;
-      while (length > 0 && text[length] != ' ') length--;
-      if (length == 0) length = (int)strcspn(text, "\n");
+    while (is_long && text[length] && GoesOn(text + length + 1)) length += 1 + (int)strcspn(text + length + 1, "\n");
+    if (!is_long) printf("%.*s", length, text);
+    for (int k = 0, word; is_long && k < length; k += word + 1) {
+      word = (int)strcspn(text + k, " \n");
+      if (column && column + 1 + word > MARGIN) column = printf("\n") - 1;
+      column += printf("%s%.*s", column ? " " : "", word, text + k);
     }
-    printf("%.*s\n", length, text);
+    printf("\n");
     text += length;
-    if (*text) text++; /* the blank or the newline */
+    if (*text) text++;
   }
 }
 
