@@ -130,7 +130,7 @@ PETSC_EXTERN PetscErrorCode EqmMapGetQuasiConformal(EqmMap map, const PetscReal 
 PETSC_EXTERN PetscErrorCode EqmMapGetConformalFactor(EqmMap map, const PetscReal **per_vertex);
 /* Figures of the whole map, the same on every rank. */
 PETSC_EXTERN PetscErrorCode EqmMapGetDistortion(EqmMap map, const EqmDistortion **distortion);
-/* Maps to the ball: triangles of the boundary that do not look outward. */
+/* Maps to the ball: triangles of the boundary that face inward. */
 PETSC_EXTERN PetscErrorCode EqmMapGetBoundaryFolds(EqmMap map, PetscInt64 *folds);
 /* The energy of the first map and of the last; of `conformal` the Dirichlet energy. Either pointer may be NULL. */
 PETSC_EXTERN PetscErrorCode EqmMapGetEnergies(EqmMap map, PetscReal *initial, PetscReal *final);

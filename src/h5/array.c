@@ -73,7 +73,7 @@ static PetscErrorCode Transfer(EqmH5 h5, const char *path, hid_t type, EqmSlab s
   PetscErrorCode error;
 
   PetscFunctionBegin;
-  if (slab.total == 0) PetscFunctionReturn(0); /* an array without rows has no place in the file */
+  if (slab.total == 0) PetscFunctionReturn(0); /* an array without rows takes no space in the file */
   error = EqmH5Agree(h5, OpenTransfer(h5, path, slab, &dataset, &space, &memory), path);
   if (!error) {
     if (out)

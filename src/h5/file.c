@@ -93,9 +93,9 @@ static PetscErrorCode OpenHandles(EqmH5 h5)
   PetscFunctionReturn(0);
 }
 
-/* HDF5 cannot give a file up: it writes headers even while it closes a file for which there is no room, and crashes
-   later if that fails. So the room for headers is taken first, in a file without a name, and given back when the room
-   for the rest has been taken, or has not been found. 0 or the error number. */
+/* HDF5 cannot abandon a file: it writes headers even while it closes a file for which the disk has no space, and
+   crashes later if that fails. So the space for headers is reserved first, in an unnamed file, and released when the
+   space for the rest has been reserved, or could not be. 0 or the error number. */
 static int ReserveForHeaders(EqmH5 h5)
 {
   char message[EQM_MESSAGE_MAX];
@@ -208,7 +208,7 @@ static int ReserveBytes(const char *name, off_t size)
   if (descriptor < 0) return errno;
   if (size > 0) failed = posix_fallocate(descriptor, 0, size);
   if (failed == EINVAL || failed == EOPNOTSUPP)
-    failed = 0; /* a file system that cannot reserve: the writes will tell */
+    failed = 0; /* a file system that cannot reserve: the writes themselves will fail */
   if (close(descriptor) != 0 && !failed) failed = errno;
   return failed;
 }

@@ -88,7 +88,7 @@ PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x)
   PetscCall(EqmPhaseBegin(mesh->ledger, EQM_PHASE_MEASURE));
   PetscCall(PetscMalloc2(mesh->num_local_cells, &a, n, &sample));
   PetscCall(ImageMeasures(map, mesh, x, a));
-  /* on the sphere the energy takes the flat areas without their signs, which only tell the folds */
+  /* on the sphere the energy is of flat areas without signs, which serve for counting folds only */
   PetscCall(EqmImageSum(mesh, a, &totals));
   map->distortion.folds = totals.folds;
   if (mesh->cell_size == 3 && map->dim == 3) {

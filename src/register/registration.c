@@ -52,7 +52,7 @@ static PetscErrorCode AskForTarget(EqmRegistration r, const char *file_b)
 
   PetscFunctionBegin;
   PetscCall(EqmFirstRestart(r, name, &restart));
-  if (!file_b && restart) PetscCall(EqmKeptMeshAsk(r->comm, restart, 1, entry, sizeof(entry)));
+  if (!file_b && restart) PetscCall(EqmKeptMeshGetEntry(r->comm, restart, 1, entry, sizeof(entry)));
   PetscCall(PetscStrcmp(file_b ? file_b : entry, "target", &r->bare));
   PetscFunctionReturn(0);
 }

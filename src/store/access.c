@@ -1,4 +1,4 @@
-/* What a map tells of itself. */
+/* Getters and setters of a map. */
 #include "store/map_private.h"
 #include <omp.h>
 

@@ -1,4 +1,5 @@
-/* A map in mesh formats: the input's cells with every vertex at its image, or at its place with its image as a field.
+/* A map in mesh formats: the input's cells with every vertex at its image, or at its input position with its image as a
+ * field.
  */
 #include "store/map_private.h"
 #include "store/store.h"
@@ -84,7 +85,7 @@ static PetscErrorCode Reset(Gathered *all)
   PetscFunctionReturn(0);
 }
 
-/* On rank 0: exchange the places of the vertices and `points`, their images. */
+/* On rank 0: the positions of the vertices go into `points`, their images into the mesh. */
 static void MoveVertices(PetscInt dim, Gathered *all)
 {
   for (PetscInt i = 0; i < all->mesh.num_vertices; i++) {

@@ -24,7 +24,7 @@ PetscErrorCode EqmKeptMeshName(const char *checkpoint, const char *part, char *n
   PetscFunctionReturn(0);
 }
 
-/* Does a copy come with a density? */
+/* Does a copy hold a density? */
 static PetscErrorCode HasDensity(MPI_Comm comm, const char *name, PetscBool *has)
 {
   EqmH5 h5;
@@ -50,8 +50,8 @@ static PetscErrorCode ChecksumOfMap(EqmMap map, PetscInt64 *checksum)
   PetscFunctionReturn(0);
 }
 
-/* What a copy says that its map's checksum is; empty: it has none. */
-static PetscErrorCode AskOfMap(MPI_Comm comm, const char *name, char *text, size_t length)
+/* The checksum of its map that a copy holds; empty: it has none. */
+static PetscErrorCode ReadMapChecksum(MPI_Comm comm, const char *name, char *text, size_t length)
 {
   EqmH5 h5;
 
@@ -62,8 +62,9 @@ static PetscErrorCode AskOfMap(MPI_Comm comm, const char *name, char *text, size
   PetscFunctionReturn(0);
 }
 
-/* Is a sound copy there, and is it of this mesh with this density and map? All of the mesh is read. */
-static PetscErrorCode Look(EqmSoup soup, const char *map_checksum, const char *file, PetscBool *sound, PetscBool *same)
+/* Is there an undamaged copy, and is it of this mesh with this density and map? All of the mesh is read. */
+static PetscErrorCode CompareCopy(EqmSoup soup, const char *map_checksum, const char *file, PetscBool *sound,
+                                  PetscBool *same)
 {
   PetscInt64 wanted, found = 0;
   EqmSoup there = NULL;
@@ -81,7 +82,7 @@ static PetscErrorCode Look(EqmSoup soup, const char *map_checksum, const char *f
   if (!error) error = HasDensity(soup->comm, file, &has_density);
   if (!error && has_density) error = EqmSoupReadDensity(there, file);
   if (!error) error = EqmSoupComputeIdentity(there, &found);
-  if (!error) error = AskOfMap(soup->comm, file, map_there, sizeof(map_there));
+  if (!error) error = ReadMapChecksum(soup->comm, file, map_there, sizeof(map_there));
   PetscCall(PetscPopErrorHandler());
   PetscCall(PetscStrcmp(map_there, map_checksum, &same_map));
   *sound = (PetscBool)!error;
@@ -103,7 +104,7 @@ PetscErrorCode EqmKeptMeshWrite(EqmSoup soup, EqmMap map, const char *name, Pets
   if (rank == 0) EqmAtomicSweep(name);
   PetscCall(ChecksumOfMap(map, &checksum));
   if (map) PetscCall(PetscSNPrintf(text, sizeof(text), "%" PetscInt64_FMT, checksum));
-  PetscCall(Look(soup, text, name, &sound, &same));
+  PetscCall(CompareCopy(soup, text, name, &sound, &same));
   if (same || (sound && resumed)) PetscFunctionReturn(0);
   if (map) PetscCall(EqmMapAddText(map, checksum_key, text));
   PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
@@ -121,7 +122,7 @@ PetscErrorCode EqmKeptMeshCheckMap(EqmMap map, const char *name)
   PetscBool same;
 
   PetscFunctionBegin;
-  PetscCall(AskOfMap(map->soup->comm, name, was, sizeof(was)));
+  PetscCall(ReadMapChecksum(map->soup->comm, name, was, sizeof(was)));
   PetscCall(ChecksumOfMap(map, &checksum));
   PetscCall(PetscSNPrintf(is, sizeof(is), "%" PetscInt64_FMT, checksum));
   PetscCall(PetscStrcmp(was, is, &same));
@@ -131,8 +132,8 @@ PetscErrorCode EqmKeptMeshCheckMap(EqmMap map, const char *name)
   PetscFunctionReturn(0);
 }
 
-/* What a checkpoint says of its copies; empty: nothing, or it cannot be read. */
-static PetscErrorCode Ask(MPI_Comm comm, const char *checkpoint, char *names, size_t length)
+/* The names of its copies that a checkpoint holds; empty: none, or it cannot be read. */
+static PetscErrorCode ReadEntries(MPI_Comm comm, const char *checkpoint, char *names, size_t length)
 {
   char message[EQM_MESSAGE_MAX];
   PetscErrorCode error;
@@ -152,7 +153,7 @@ static PetscErrorCode Ask(MPI_Comm comm, const char *checkpoint, char *names, si
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmKeptMeshAsk(MPI_Comm comm, const char *checkpoint, PetscInt number, char *entry, size_t length)
+PetscErrorCode EqmKeptMeshGetEntry(MPI_Comm comm, const char *checkpoint, PetscInt number, char *entry, size_t length)
 {
   char previous[PETSC_MAX_PATH_LEN], names[PETSC_MAX_PATH_LEN], *begin = names;
   PetscBool there, before;
@@ -162,8 +163,8 @@ PetscErrorCode EqmKeptMeshAsk(MPI_Comm comm, const char *checkpoint, PetscInt nu
   PetscCall(EqmFileIsThere(comm, checkpoint, &there));
   PetscCall(EqmFileIsThere(comm, previous, &before));
   if (!there && !before) EqmFail(comm, EQM_ERR_IO, "-restart %s: there is no such file", checkpoint);
-  PetscCall(Ask(comm, checkpoint, names, sizeof(names)));
-  if (!names[0]) PetscCall(Ask(comm, previous, names, sizeof(names)));
+  PetscCall(ReadEntries(comm, checkpoint, names, sizeof(names)));
+  if (!names[0]) PetscCall(ReadEntries(comm, previous, names, sizeof(names)));
   for (PetscInt k = 0; k < number && begin; k++) {
     begin = strchr(begin, ',');
     if (begin) begin++;
@@ -180,7 +181,7 @@ PetscErrorCode EqmKeptMeshFind(MPI_Comm comm, const char *checkpoint, PetscInt n
   PetscBool there;
 
   PetscFunctionBegin;
-  PetscCall(EqmKeptMeshAsk(comm, checkpoint, number, copy, sizeof(copy)));
+  PetscCall(EqmKeptMeshGetEntry(comm, checkpoint, number, copy, sizeof(copy)));
   if (!copy[0]) {
     EqmFail(comm, EQM_ERR_CHECKPOINT, "-restart %s: it has no mesh of its own, or is damaged; name the mesh as before",
             checkpoint);

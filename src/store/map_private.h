@@ -51,8 +51,8 @@ struct _p_EqmMap {
   char linear_solver[EQM_LINEAR_TEXT]; /* what solved with matrices, and what it took */
   EqmMapCost cost;
   PetscInt64 num_boundary_vertices;
-  PetscInt64 boundary_folds;        /* maps to the ball: triangles of the boundary that do not look outward */
-  PetscInt num_hessian_eigenvalues; /* where they were asked for: the smallest of the Hessian at the result */
+  PetscInt64 boundary_folds;        /* maps to the ball: triangles of the boundary that face inward */
+  PetscInt num_hessian_eigenvalues; /* where they were computed: the smallest of the Hessian at the result */
   PetscReal *hessian_eigenvalues;
   EqmMap repaired;        /* where the input was repaired first: the map of the repaired mesh; referenced, not owned */
   const PetscInt *parent; /* with `repaired`: per cell of its soup's slab the input cell it comes from; referenced */

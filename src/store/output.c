@@ -1,4 +1,4 @@
-/* Can results be written where the user wants them? Asked before the run. And what a killed run has left there. */
+/* Before a run: can its files be written? Removal of temporaries that a killed run has left. */
 #include "store/output.h"
 #include "base/atomicfile.h"
 #include "store/store.h"

@@ -1,17 +1,17 @@
-/* The visitor's verbs: what each does while a state is announced, written or read. */
+/* Scalars, texts and names of a state: what each call does while the state is announced, written or read. */
 #include "store/state_private.h"
 #include <string.h>
 
-PetscErrorCode EqmStateTableAdd(EqmStateTable *table, const char *name, PetscInt *place)
+PetscErrorCode EqmStateTableAdd(EqmStateTable *table, const char *name, PetscInt *index)
 {
   PetscFunctionBegin;
   if (table->count == table->most) {
     table->most = PetscMax(32, 2 * table->most);
     PetscCall(PetscRealloc(sizeof(*table->entry) * (size_t)table->most, &table->entry));
   }
-  *place = table->count++;
-  PetscCall(PetscMemzero(&table->entry[*place], sizeof(*table->entry)));
-  PetscCall(PetscStrncpy(table->entry[*place].name, name, EQM_STATE_NAME));
+  *index = table->count++;
+  PetscCall(PetscMemzero(&table->entry[*index], sizeof(*table->entry)));
+  PetscCall(PetscStrncpy(table->entry[*index].name, name, EQM_STATE_NAME));
   PetscFunctionReturn(0);
 }
 
@@ -58,22 +58,22 @@ static PetscErrorCode FullName(EqmState state, const char *lead, const char *nam
   PetscFunctionReturn(0);
 }
 
-/* The place of a name in its table: a new one while announcing, the old one while reading, -1 while writing. */
-PetscErrorCode EqmStateFindPlace(EqmState state, EqmStateTable *table, const char *lead, const char *name,
-                                 char full[EQM_STATE_NAME], PetscInt *place)
+/* The index of a name in its table: a new entry while announcing, the old one while reading, -1 while writing. */
+PetscErrorCode EqmStateFindEntry(EqmState state, EqmStateTable *table, const char *lead, const char *name,
+                                 char full[EQM_STATE_NAME], PetscInt *index)
 {
   PetscFunctionBegin;
   PetscCall(FullName(state, lead, name, full));
-  *place = EqmStateTableFind(table, full);
-  if (state->mode == EQM_STATE_READ && *place < 0) {
+  *index = EqmStateTableFind(table, full);
+  if (state->mode == EQM_STATE_READ && *index < 0) {
     EqmFail(state->mesh->comm, EQM_ERR_CHECKPOINT,
             "'%s' says nothing of '%s': another version wrote it, or a run of another kind; begin anew, without "
             "-restart",
             state->h5->name, full);
   }
   if (state->mode == EQM_STATE_ANNOUNCE) {
-    PetscCheck(*place < 0, state->mesh->comm, PETSC_ERR_PLIB, "two parts of the state are called '%s'", full);
-    PetscCall(EqmStateTableAdd(table, full, place));
+    PetscCheck(*index < 0, state->mesh->comm, PETSC_ERR_PLIB, "two parts of the state are called '%s'", full);
+    PetscCall(EqmStateTableAdd(table, full, index));
   }
   PetscFunctionReturn(0);
 }
@@ -81,12 +81,12 @@ PetscErrorCode EqmStateFindPlace(EqmState state, EqmStateTable *table, const cha
 PetscErrorCode EqmStateInt64(EqmState state, const char *name, PetscInt64 *value)
 {
   char full[EQM_STATE_NAME];
-  PetscInt place;
+  PetscInt index;
 
   PetscFunctionBegin;
-  PetscCall(EqmStateFindPlace(state, &state->integers, "", name, full, &place));
-  if (state->mode == EQM_STATE_READ) *value = state->integers.entry[place].integer;
-  if (state->mode == EQM_STATE_ANNOUNCE) state->integers.entry[place].integer = *value;
+  PetscCall(EqmStateFindEntry(state, &state->integers, "", name, full, &index));
+  if (state->mode == EQM_STATE_READ) *value = state->integers.entry[index].integer;
+  if (state->mode == EQM_STATE_ANNOUNCE) state->integers.entry[index].integer = *value;
   PetscFunctionReturn(0);
 }
 
@@ -113,24 +113,24 @@ PetscErrorCode EqmStateBool(EqmState state, const char *name, PetscBool *value)
 PetscErrorCode EqmStateReal(EqmState state, const char *name, PetscReal *value)
 {
   char full[EQM_STATE_NAME];
-  PetscInt place;
+  PetscInt index;
 
   PetscFunctionBegin;
-  PetscCall(EqmStateFindPlace(state, &state->reals, "", name, full, &place));
-  if (state->mode == EQM_STATE_READ) *value = state->reals.entry[place].real;
-  if (state->mode == EQM_STATE_ANNOUNCE) state->reals.entry[place].real = *value;
+  PetscCall(EqmStateFindEntry(state, &state->reals, "", name, full, &index));
+  if (state->mode == EQM_STATE_READ) *value = state->reals.entry[index].real;
+  if (state->mode == EQM_STATE_ANNOUNCE) state->reals.entry[index].real = *value;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmStateText(EqmState state, const char *name, char *text, size_t length)
 {
   char full[EQM_STATE_NAME];
-  PetscInt place;
+  PetscInt index;
 
   PetscFunctionBegin;
-  PetscCall(EqmStateFindPlace(state, &state->texts, "", name, full, &place));
-  if (state->mode == EQM_STATE_READ) PetscCall(PetscStrncpy(text, state->texts.entry[place].text, length));
-  if (state->mode == EQM_STATE_ANNOUNCE) PetscCall(PetscStrallocpy(text, &state->texts.entry[place].text));
+  PetscCall(EqmStateFindEntry(state, &state->texts, "", name, full, &index));
+  if (state->mode == EQM_STATE_READ) PetscCall(PetscStrncpy(text, state->texts.entry[index].text, length));
+  if (state->mode == EQM_STATE_ANNOUNCE) PetscCall(PetscStrallocpy(text, &state->texts.entry[index].text));
   PetscFunctionReturn(0);
 }
 

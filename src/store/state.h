@@ -1,6 +1,6 @@
 /* The state of a run in a file, so that it can go on later as if it had never stopped.
 
-   Whoever has something to remember names it once, in one function that serves saving and loading alike:
+   An object names what belongs to its state once, in one function that serves saving and loading alike:
 
        static PetscErrorCode State(EqmState state, Thing *thing)
        {

@@ -37,12 +37,12 @@ struct _p_EqmState {
 PETSC_INTERN const char *const EqmStateListNames[EQM_STATE_LISTS];
 PETSC_INTERN const char EqmStateIntegersPath[], EqmStateRealsPath[];
 
-PETSC_INTERN PetscErrorCode EqmStateTableAdd(EqmStateTable *table, const char *name, PetscInt *place);
+PETSC_INTERN PetscErrorCode EqmStateTableAdd(EqmStateTable *table, const char *name, PetscInt *index);
 PETSC_INTERN PetscInt EqmStateTableFind(const EqmStateTable *table, const char *name);
 PETSC_INTERN PetscErrorCode EqmStateTableReset(EqmStateTable *table);
 PETSC_INTERN EqmStateTable *EqmStateTableOf(EqmState state, int k);
-PETSC_INTERN PetscErrorCode EqmStateFindPlace(EqmState state, EqmStateTable *table, const char *lead, const char *name,
-                                              char full[EQM_STATE_NAME], PetscInt *place);
+PETSC_INTERN PetscErrorCode EqmStateFindEntry(EqmState state, EqmStateTable *table, const char *lead, const char *name,
+                                              char full[EQM_STATE_NAME], PetscInt *index);
 PETSC_INTERN PetscErrorCode EqmStateCreate(EqmMesh mesh, EqmStateMode mode, EqmState *state);
 PETSC_INTERN EqmSlab EqmStateSlab(EqmState state, PetscInt total, PetscInt width, PetscBool on_root);
 PETSC_INTERN PetscErrorCode EqmStateChecksumOfNames(EqmState state, PetscInt64 *checksum);

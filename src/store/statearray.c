@@ -1,4 +1,4 @@
-/* The visitor's verbs for arrays, on every rank its slab. */
+/* Arrays of a state: every rank announces, writes or reads its slab. */
 #include "store/state_private.h"
 #include "base/rows.h"
 
@@ -19,13 +19,13 @@ EqmSlab EqmStateSlab(EqmState state, PetscInt total, PetscInt width, PetscBool o
 }
 
 /* Announce an array, or find it with the shape that is wanted. */
-static PetscErrorCode PlaceArray(EqmState state, const char *name, EqmSlab slab, char full[EQM_STATE_NAME],
-                                 PetscInt *place)
+static PetscErrorCode FindArray(EqmState state, const char *name, EqmSlab slab, char full[EQM_STATE_NAME],
+                                PetscInt *index)
 {
   PetscInt64 total, width;
 
   PetscFunctionBegin;
-  PetscCall(EqmStateFindPlace(state, &state->arrays, "/", name, full, place));
+  PetscCall(EqmStateFindEntry(state, &state->arrays, "/", name, full, index));
   if (state->mode == EQM_STATE_ANNOUNCE) {
     PetscCall(EqmH5DeclareReals(state->h5, full, slab.total, slab.width));
     PetscCall(EqmH5PutChecksum(state->h5, full, -1));
@@ -42,7 +42,7 @@ static PetscErrorCode PlaceArray(EqmState state, const char *name, EqmSlab slab,
 }
 
 /* Write an array with its checksum. */
-static PetscErrorCode WriteArray(EqmState state, const char *full, PetscInt place, EqmSlab slab,
+static PetscErrorCode WriteArray(EqmState state, const char *full, PetscInt index, EqmSlab slab,
                                  const PetscReal *values)
 {
   EqmChecksum checksum;
@@ -52,7 +52,7 @@ static PetscErrorCode WriteArray(EqmState state, const char *full, PetscInt plac
   PetscCall(EqmChecksumJoin(state->mesh->comm,
                             EqmChecksumReals((PetscInt64)slab.count * PetscMax(slab.width, 1), values), &checksum));
   PetscCall(EqmH5PutChecksum(state->h5, full, checksum.crc));
-  state->arrays.entry[place].integer = checksum.crc;
+  state->arrays.entry[index].integer = checksum.crc;
   PetscFunctionReturn(0);
 }
 
@@ -60,13 +60,13 @@ PetscErrorCode EqmStateReals(EqmState state, const char *name, PetscInt count, P
 {
   const EqmSlab on_root = EqmStateSlab(state, count, 0, PETSC_TRUE), everywhere = {.total = count, .count = count};
   char full[EQM_STATE_NAME];
-  PetscInt place;
+  PetscInt index;
 
   PetscFunctionBegin;
   if (count == 0) PetscFunctionReturn(0);
-  PetscCall(PlaceArray(state, name, on_root, full, &place));
+  PetscCall(FindArray(state, name, on_root, full, &index));
   if (state->mode == EQM_STATE_READ) PetscCall(EqmH5ReadReals(state->h5, full, everywhere, values));
-  if (state->mode == EQM_STATE_WRITE) PetscCall(WriteArray(state, full, place, on_root, values));
+  if (state->mode == EQM_STATE_WRITE) PetscCall(WriteArray(state, full, index, on_root, values));
   PetscFunctionReturn(0);
 }
 
@@ -104,16 +104,16 @@ PetscErrorCode EqmStateVertices(EqmState state, const char *name, PetscInt width
   const EqmMesh mesh = state->mesh;
   const EqmSlab slab = EqmStateSlab(state, mesh->soup_vertices, width, PETSC_FALSE);
   char full[EQM_STATE_NAME];
-  PetscInt place;
+  PetscInt index;
 
   PetscFunctionBegin;
-  PetscCall(PlaceArray(state, name, slab, full, &place));
+  PetscCall(FindArray(state, name, slab, full, &index));
   if (state->mode == EQM_STATE_ANNOUNCE) PetscFunctionReturn(0);
   PetscCall(MakeWay(state, slab));
   if (state->mode == EQM_STATE_WRITE) {
     PetscCall(PetscArrayzero(state->buffer, slab.width * slab.count)); /* vertices of no cell */
     PetscCall(EqmRowsToRoots(state->to_slab, width, local, state->buffer));
-    PetscCall(WriteArray(state, full, place, slab, state->buffer));
+    PetscCall(WriteArray(state, full, index, slab, state->buffer));
   } else {
     PetscCall(EqmH5ReadReals(state->h5, full, slab, state->buffer));
     PetscCall(EqmRowsToLeaves(state->to_slab, width, state->buffer, local));

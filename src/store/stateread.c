@@ -1,15 +1,15 @@
-/* The file of a state: looked through from end to end before anything is taken from it. */
+/* Opening the file of a state: all of it is checked before anything is read from it. */
 #include "store/state_private.h"
 
 static PetscErrorCode SplitNames(const char *list, EqmStateTable *table)
 {
   char **names;
-  PetscInt place;
+  PetscInt index;
   int count;
 
   PetscFunctionBegin;
   PetscCall(PetscStrToArray(list, ',', &count, &names));
-  for (int k = 0; k < count; k++) PetscCall(EqmStateTableAdd(table, names[k], &place));
+  for (int k = 0; k < count; k++) PetscCall(EqmStateTableAdd(table, names[k], &index));
   PetscCall(PetscStrToArrayDestroy(count, names));
   PetscFunctionReturn(0);
 }

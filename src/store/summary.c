@@ -151,7 +151,7 @@ static void AddQuality(cJSON *root, EqmMap map)
   if (!flat) AddCount(root, "boundary_folds", map->boundary_folds);
 }
 
-/* Only where they were asked for. */
+/* Only where they were computed. */
 static void AddHessian(cJSON *root, EqmMap map)
 {
   cJSON *list = cJSON_AddArrayToObject(root, "hessian_eigenvalues");

@@ -100,7 +100,7 @@ static void Mesh(Writer *writer, EqmMap map, PetscInt num_frames)
   Close(writer);
 }
 
-/* The image; every vertex has its place on the mesh as a field. */
+/* The image; every vertex has its position on the mesh as a field. */
 static void Image(Writer *writer, EqmMap map, PetscInt num_frames)
 {
   (void)num_frames;
