@@ -38,7 +38,7 @@ PAPERS = ("000", "001", "002", "003", "004")
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("paper", choices=PAPERS)
-    parser.add_argument("--data", default=os.environ.get("EQUIMAP_DATA", "."), help="the folder with meshes; default: EQUIMAP_DATA")
+    parser.add_argument("--data", default=os.environ.get("EQUIMAP_DATA", "."), help="folder of meshes; default: EQUIMAP_DATA")
     parser.add_argument("--results", type=pathlib.Path, help="default: paper-NUMBER")
     parser.add_argument("--program", default=find_program(), help="default: EQUIMAP, or build/equimap")
     parser.add_argument("--only", metavar="PATTERN", default="*", help="rows whose names match, like '*-ncg'")

@@ -17,7 +17,8 @@ REDRAWN = {
     "000": {"histogram": "Figure 3", "bars": "Figure 4", "time": "Figure 5"},
     "001": {"energy": "Figures 5 to 7"},
     "002": {"energy": "Figure 5", "histogram": "Figure 6"},
-    "003": {"histogram": "Figure 4", "energy": "Figures 5 and 6 (a)", "time": "Figure 6 (b)", "bars": "Figure 7", "folds": "Figure 8"},
+    "003": {"histogram": "Figure 4", "energy": "Figures 5 and 6 (a)", "time": "Figure 6 (b)", "bars": "Figure 7",
+            "folds": "Figure 8"},
     "004": {"histogram": "Figure 4", "energy": "Figures 5 and 6", "steps": "Figures 7 and 8"},
 }
 WIDTH = 4.2
@@ -53,8 +54,8 @@ def families(runs):
 def grid(count, height=3.):
     """So many panels, three in a line."""
     lines = -(-count // ACROSS)
-    figure, axes = pyplot.subplots(lines, min(ACROSS, count), figsize=(WIDTH * min(ACROSS, count), .6 + height * lines), squeeze=False,
-                                   layout="constrained")
+    across = min(ACROSS, count)
+    figure, axes = pyplot.subplots(lines, across, figsize=(WIDTH * across, .6 + height * lines), squeeze=False, layout="constrained")
     panels = list(axes.flat)
     for spare in panels[count:]:
         spare.set_visible(False)
@@ -122,7 +123,8 @@ def folds(_, runs):
         axes.set(xlabel="iteration", ylabel="folds")
         axes.set_yscale("symlog", linthresh=1)
 
-    return per_mesh([run for run in runs if run.column("folds").any()], panel) if any(run.column("folds").any() for run in runs) else None
+    folded = [run for run in runs if run.column("folds").any()]
+    return per_mesh(folded, panel) if folded else None
 
 
 def curve_of(column, label, positive):
@@ -196,7 +198,8 @@ def draw(paper, parts):
     runs = []
     for results, row, _ in parts:
         store = Store(results, row)
-        runs.append(Curves(row, store.summary(), read_history(store), published(find_preset(row.paper)), store.folder / "result.h5"))
+        runs.append(Curves(row, store.summary(), read_history(store), published(find_preset(row.paper)),
+                           store.folder / "result.h5"))
     runs = [run for run in runs if run.history]
     for kind, (caption, make) in KINDS.items():
         figure = make(paper, runs) if runs else None

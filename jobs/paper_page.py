@@ -17,13 +17,15 @@ TITLES = {
 # Figures of a line by their names in tables, and how they are written.
 FIGURES = {
     "energy": ("E", ".3e"), "sd": ("SD", ".3e"), "sd_by_mean": ("SD/mean", ".4f"), "error_mean": ("mean error", ".3e"),
-    "error_sd": ("SD of the error", ".3e"), "error_p25": ("25 %", ".3e"), "error_p50": ("50 %", ".3e"), "error_p75": ("75 %", ".3e"),
-    "error_p95": ("95 %", ".3e"), "eigenvalue": ("eigenvalue", ".3e"), "noise_error": ("err-E", ".3e"),
-    "angle_mean": ("angle, mean", ".3f"), "angle_median": ("angle, median", ".3f"), "folds": ("folds", "d"), "seconds": ("seconds", ".1f"),
+    "error_sd": ("SD of the error", ".3e"), "error_p25": ("25 %", ".3e"), "error_p50": ("50 %", ".3e"),
+    "error_p75": ("75 %", ".3e"), "error_p95": ("95 %", ".3e"), "eigenvalue": ("eigenvalue", ".3e"), "noise_error": ("err-E", ".3e"),
+    "angle_mean": ("angle, mean", ".3f"), "angle_median": ("angle, median", ".3f"), "folds": ("folds", "d"),
+    "seconds": ("seconds", ".1f"),
 }
 OURS_ALWAYS = ("folds", "seconds")
 STYLE = """body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; color: #222 }
-table { border-collapse: collapse; font-size: 13px; margin: 1em 0 } th, td { padding: .2em .7em; text-align: right; white-space: nowrap }
+table { border-collapse: collapse; font-size: 13px; margin: 1em 0 }
+th, td { padding: .2em .7em; text-align: right; white-space: nowrap }
 th:first-child, td:first-child, th:nth-child(2), td:nth-child(2) { text-align: left }
 thead tr:last-child { border-bottom: 1px solid #222 } tbody tr:nth-child(even) { background: #f4f4f4 }
 td.theirs { color: #777 } td.off { color: #b00 } img { max-width: 100% } figcaption { color: #555 }"""
@@ -68,7 +70,7 @@ def rows_of(lines):
 
 def html_table(lines):
     names, table = rows_of(lines)
-    text = ["<table><thead><tr>" + "".join(f"<th rowspan=2>{word}</th>" for word in ("row", "mesh", "vertices", "method", "iterations"))]
+    text = ["<table><thead><tr>", *(f"<th rowspan=2>{word}</th>" for word in ("row", "mesh", "vertices", "method", "iterations"))]
     text += [f"<th colspan=3>{html.escape(name)}</th>" for name in names] + ["</tr><tr>"]
     text += ["<th>ours</th><th>theirs</th><th></th>" for _ in names] + ["</tr></thead><tbody>"]
     for words, cells in table:
@@ -94,7 +96,7 @@ def parts(papers, others):
         yield ("On the paper's meshes", "Grey: published, and by how much ours differs. Seconds are of different machines.",
                [line for _, _, lines in papers for line in lines], papers)
     if others:
-        yield ("On substitutes", "The paper's meshes are not there: these stand in, and the published figures are those of other meshes.",
+        yield ("On substitutes", "The paper's meshes are not there: these stand in; the published figures are of other meshes.",
                [line for _, _, lines in others for line in lines], others)
 
 
@@ -128,7 +130,8 @@ def text_page(pyplot, title, lines):
     figure = pyplot.figure(figsize=(11.7, 8.3))
     longest = max(map(len, lines))
     figure.text(.03, .95, title, fontsize=13)
-    figure.text(.03, .91, "\n".join(lines), family="monospace", va="top", fontsize=min(9., 1250. / longest, 520. / (1.35 * len(lines))))
+    size = min(9., 1250. / longest, 520. / (1.35 * len(lines)))
+    figure.text(.03, .91, "\n".join(lines), family="monospace", va="top", fontsize=size)
     return figure
 
 
@@ -160,7 +163,8 @@ def write(paper, folder, papers, others, missing):
                          "/usr/bin/python3)") from absent
     from matplotlib import pyplot
 
-    contents = [(heading, words, lines, list(paper_figures.draw(paper, runs))) for heading, words, lines, runs in parts(papers, others)]
+    contents = [(heading, words, lines, list(paper_figures.draw(paper, runs)))
+                for heading, words, lines, runs in parts(papers, others)]
     pages = folder / "paper.html", folder / "paper.pdf"
     pages[0].write_text(html_page(paper, contents, missing), encoding="utf-8")
     pdf_page(pyplot, pages[1], paper, contents, missing)

@@ -38,7 +38,7 @@ SCALES = {
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=find_program(), help="default: EQUIMAP, or build/equimap")
-    parser.add_argument("--kernels", default=str(HERE.parent / "build" / "perf" / "bench_kernels"), help="the benchmark of the kernels")
+    parser.add_argument("--kernels", default=str(HERE.parent / "build" / "perf" / "bench_kernels"), help="their benchmark")
     parser.add_argument("--scale", choices=SCALES, default="small")
     parser.add_argument("--only", default=",".join(PARTS), help="parts, with commas between")
     parser.add_argument("--ranks", type=numbers, default=[1, 2])
@@ -62,10 +62,11 @@ def case(args, command, shape, size, ranks, threads):
     stem = os.path.join(args.folder, f"{command}-{shape}-{size}-r{ranks}-t{threads}")
     runs = [run_once(args.program, command, mesh, stem, ranks, threads, args.options) for _ in range(args.repeat)]
     best = min(runs, key=lambda run: run["seconds"]["total"])
-    row = {"shape": shape, "size": size, "ranks": ranks, "threads": threads, "options": " ".join(args.options), **dict(flatten(best))}
-    print(f"  {best['mesh']['vertices']:>9,} vertices, {ranks} x {threads}: {best['seconds']['total']:8.2f} s, "
-          f"{best['memory_bytes']['total'] / best['mesh']['vertices']:8.0f} bytes per vertex, energy {best['energy']['final']:.3e}", flush=True)
-    return row
+    vertices = best["mesh"]["vertices"]
+    print(f"  {vertices:>9,} vertices, {ranks} x {threads}: {best['seconds']['total']:8.2f} s, "
+          f"{best['memory_bytes']['total'] / vertices:8.0f} bytes per vertex, energy {best['energy']['final']:.3e}", flush=True)
+    return {"shape": shape, "size": size, "ranks": ranks, "threads": threads, "options": " ".join(args.options),
+            **dict(flatten(best))}
 
 
 def measure_kernels(args):
@@ -75,7 +76,8 @@ def measure_kernels(args):
         return []
     name = os.path.join(args.folder, "kernels.json")
     size = str(SCALES[args.scale][0][-1])
-    subprocess.run([args.kernels, "-n", size, "-max_threads", str(max(args.threads)), "-json", name], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([args.kernels, "-n", size, "-max_threads", str(max(args.threads)), "-json", name], check=True,
+                   stdout=subprocess.DEVNULL)
     with open(name, encoding="utf-8") as file:
         return json.load(file)["kernels"]
 
@@ -131,7 +133,8 @@ def summary(tables):
                          f"{rows[-1]['mesh.vertices']} vertices, {float(rows[-1]['seconds.total']):.1f} s at the largest)")
     for part in ("strong", "weak"):
         if part in tables:
-            lines.append(f"{part}: " + ", ".join(f"{label}: {value:.2f}" for _, value, label in efficiencies(tables[part], part == "weak")))
+            points = efficiencies(tables[part], part == "weak")
+            lines.append(f"{part}: " + ", ".join(f"{label}: {value:.2f}" for _, value, label in points))
     for row in tables.get("kernels", ()):
         lines.append(f"kernel {row['kernel']}, {row['threads']} threads: {float(row['ns_per_cell']):.1f} ns per cell, "
                      f"{100. * float(row['share_of_triad']):.0f} % of the triad's bandwidth")

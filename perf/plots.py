@@ -13,9 +13,9 @@ def kernels(axes, rows):
     names = list(dict.fromkeys(row["kernel"] for row in rows))
     threads = sorted({int(row["threads"]) for row in rows})
     for k, count in enumerate(threads):
-        shares = [next((float(row["share_of_triad"]) for row in rows if row["kernel"] == name and int(row["threads"]) == count), 0.)
-                  for name in names]
-        axes.barh([place + .8 * k / len(threads) for place in range(len(names))], shares, .8 / len(threads), color=COLORS[k % len(COLORS)],
+        measured = {row["kernel"]: float(row["share_of_triad"]) for row in rows if int(row["threads"]) == count}
+        places = [place + .8 * k / len(threads) for place in range(len(names))]
+        axes.barh(places, [measured.get(name, 0.) for name in names], .8 / len(threads), color=COLORS[k % len(COLORS)],
                   label=f"{count} thread{'s' * (count > 1)}")
     axes.set_yticks(range(len(names)), names, fontsize=7)
     axes.invert_yaxis()
@@ -38,8 +38,8 @@ def growth(axes, tables, exponent):
     for (part, label), color in zip((("growth", "surfaces"), ("solids", "solids")), COLORS):
         rows = tables.get(part, [])
         if rows:
-            axes.loglog([int(row["mesh.vertices"]) for row in rows], [float(row["seconds.total"]) for row in rows], "o-", color=color,
-                        label=f"{label}: power {exponent(rows):.2f}")
+            axes.loglog([int(row["mesh.vertices"]) for row in rows], [float(row["seconds.total"]) for row in rows], "o-",
+                        color=color, label=f"{label}: power {exponent(rows):.2f}")
     axes.set(title="growth", xlabel="vertices", ylabel="seconds")
 
 
@@ -47,8 +47,9 @@ def memory(axes, tables):
     for (part, label), color in zip((("growth", "surfaces"), ("solids", "solids")), COLORS):
         rows = tables.get(part, [])
         if rows:
-            axes.semilogx([int(row["mesh.vertices"]) for row in rows],
-                          [float(row["memory_bytes.total"]) / float(row["mesh.vertices"]) / 1000. for row in rows], "o-", color=color, label=label)
+            vertices = [int(row["mesh.vertices"]) for row in rows]
+            bytes_each = [float(row["memory_bytes.total"]) / count for row, count in zip(rows, vertices)]
+            axes.semilogx(vertices, [value / 1000. for value in bytes_each], "o-", color=color, label=label)
     axes.set(title="memory", xlabel="vertices", ylabel="kB per vertex")
 
 

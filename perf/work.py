@@ -53,11 +53,14 @@ def counts_of(summary):
 def run_case(program, folder, name):
     """The figures of a case."""
     stem = os.path.join(folder, "run")
+
+    def summary(command, shape, size, ranks, options):
+        return run_once(program, command, make_mesh(program, folder, shape, size), stem, ranks, 1, shlex.split(options))
+
     if name in CASES:
-        command, shape, size, ranks, options = CASES[name]
-        return counts_of(run_once(program, command, make_mesh(program, folder, shape, size), stem, ranks, 1, shlex.split(options)))
+        return counts_of(summary(*CASES[name]))
     command, shape, sizes, options = MEMORY[name]
-    runs = [run_once(program, command, make_mesh(program, folder, shape, size), stem, 1, 1, shlex.split(options)) for size in sizes]
+    runs = [summary(command, shape, size, 1, options) for size in sizes]
     vertices = [run["mesh"]["vertices"] for run in runs]
     memory = [run["memory_bytes"]["total"] for run in runs]
     return {"bytes_per_vertex": (memory[1] - memory[0]) / (vertices[1] - vertices[0])}
@@ -101,7 +104,8 @@ def main():
                 continue
             worse, better = compare(now, saved[name], args.tolerance)
             codes.add(int(bool(worse)))
-            print(f"{name}: " + ("WORSE: " + "; ".join(worse) if worse else "as before") + ("; better: " + "; ".join(better) if better else ""))
+            words = ["WORSE: " + "; ".join(worse)] if worse else [] if better else ["as before"]
+            print(f"{name}: " + "; ".join(words + (["better: " + "; ".join(better)] if better else [])))
     if args.update:
         with open(args.baseline, "w", encoding="utf-8") as file:
             json.dump({name: saved[name] for name in (*CASES, *MEMORY) if name in saved}, file, indent=1)

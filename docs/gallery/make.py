@@ -23,8 +23,8 @@ COLORS = 160
 LARGEST = 150000  # bytes of a picture
 # name: title, words, the meshes to generate, the run. Commands are shown as they are run.
 ITEMS = {
-    "disk": ("A hilly square, to the disk", "Every patch of the checkerboard holds the same share of the surface. The angle energy "
-             "of weight .01 makes the map smooth and unique.",
+    "disk": ("A hilly square, to the disk",
+             "Every patch of the checkerboard holds the same share of the surface. The angle energy of weight .01 makes the map smooth and unique.",
              ["equimap generate hills -n 20000 -o hills.h5"], "equimap disk hills.h5 -o map.h5 -balance .01"),
     "square": ("A rolled sheet, to the square", "Its four corners go to those of the square.",
                ["equimap generate patch -n 10000 -o patch.h5"], "equimap square patch.h5 -o map.h5"),
@@ -34,8 +34,8 @@ ITEMS = {
              ["equimap generate blob -n 10000 -o blob.h5"], "equimap ball blob.h5 -o map.h5"),
     "conformal": ("The same blob, with its angles kept", "Small squares stay squares; areas do not stay what they were.",
                   ["equimap generate head -n 10000 -o head.h5"], "equimap conformal head.h5 -o map.h5"),
-    "register": ("Two blobs, point by point", "Each point of the first is sent to one of the second by way of the sphere, such that shares of "
-                 "area are kept.",
+    "register": ("Two blobs, point by point",
+                 "Each point of the first is sent to one of the second by way of the sphere, such that shares of area are kept.",
                  ["equimap generate head -n 5000 -seed 3 -o a.h5", "equimap generate head -n 8000 -seed 4 -o b.h5"],
                  "equimap register a.h5 b.h5 -o map.h5"),
 }

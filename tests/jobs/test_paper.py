@@ -19,8 +19,8 @@ from sweep_table import read_table  # noqa: E402
 
 
 def run(*arguments, expected=0):
-    done = subprocess.run([sys.executable, JOBS / "paper.py", *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          timeout=300, check=False)
+    done = subprocess.run([sys.executable, JOBS / "paper.py", *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, timeout=300, check=False)
     assert done.returncode == expected and "Traceback" not in done.stdout, (arguments, done.returncode, done.stdout)
     return done.stdout
 
@@ -32,7 +32,8 @@ def lines_of(name):
 
 def generate(shape, vertices, name):
     pathlib.Path(name).parent.mkdir(parents=True, exist_ok=True)
-    subprocess.run([os.environ["EQUIMAP"], "generate", shape, "-n", str(vertices), "-o", name], check=True, stdout=subprocess.DEVNULL)
+    command = [os.environ["EQUIMAP"], "generate", shape, "-n", str(vertices), "-o", name]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
 
 def check_meshes():

@@ -46,11 +46,12 @@ class Equimap(CMakePackage):
     depends_on("cairo+pdf+svg+png+fc+ft", when="+report")
 
     # The threads are ours: a BLAS that brings its own makes a rank use all cores, and every small front slow.
-    for threads in ("openmp", "pthreads"):
-        conflicts(f"^openblas threads={threads}", msg="equimap wants a serial BLAS: openblas threads=none")
-        conflicts(f"^blis threads={threads}", msg="equimap wants a serial BLAS: blis threads=none")
-    for threads in ("openmp", "tbb"):
-        conflicts(f"^intel-oneapi-mkl threads={threads}", msg="equimap wants a serial BLAS: intel-oneapi-mkl threads=none")
+    for library in ("openblas", "blis", "amdblis", "intel-oneapi-mkl"):
+        requires(
+            f"^{library} threads=none",
+            when=f"^[virtuals=blas] {library}",
+            msg="equimap wants a serial BLAS",
+        )
 
     extends("python@3.7:", when="+python")
     with default_args(type=("build", "run"), when="+python"):
