@@ -80,6 +80,14 @@ PETSC_EXTERN PetscErrorCode EqmSoupWrite(EqmSoup soup, const char *file);
    Errors: EQM_ERR_IO (unreadable), EQM_ERR_MESH (wrong count, not positive). */
 PETSC_EXTERN PetscErrorCode EqmSoupReadDensity(EqmSoup soup, const char *file);
 
+/* EqmSoupScale - multiply all coordinates by `factor`; the checksum becomes that of the scaled mesh. Collective.
+   Errors: EQM_ERR_USAGE (not positive and finite). */
+PETSC_EXTERN PetscErrorCode EqmSoupScale(EqmSoup soup, PetscReal factor);
+/* EqmSoupCheckExtent - refuse a mesh that is so large or so small, by a power of ten beyond 60 (solids: 40), that
+   squares of areas or volumes are no numbers. Collective. Errors: EQM_ERR_MESH, with the command that scales the mesh.
+ */
+PETSC_EXTERN PetscErrorCode EqmSoupCheckExtent(EqmSoup soup);
+
 /* EqmSoupAddNoise - move every vertex of a surface along its normal by a random length, for studies of stability (001
    section 6.5).
 

@@ -251,6 +251,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
   }
   report.file = line->argument[0];
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, report.file, &soup));
+  PetscCall(EqmSoupCheckExtent(soup));
   if (options.repair) {
     PetscInt *parent;
 

@@ -8,6 +8,7 @@ typedef struct {
   EqmPrepareOptions prepare;
   char target[32];
   PetscInt refine;
+  PetscReal scale;
 } ConvertOptions;
 
 static PetscErrorCode ReadOptions(ConvertOptions *options)
@@ -15,6 +16,7 @@ static PetscErrorCode ReadOptions(ConvertOptions *options)
   PetscFunctionBegin;
   options->repair = options->boundary = PETSC_FALSE;
   options->refine = 0;
+  options->scale = 1.;
   EqmPrepareOptionsInit(&options->prepare);
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Conversion of meshes (convert)", "convert");
   PetscCall(
@@ -27,6 +29,8 @@ static PetscErrorCode ReadOptions(ConvertOptions *options)
                                "convert", "", options->target, sizeof(options->target), &options->has_target));
   PetscCall(PetscOptionsInt("-refine", "split every triangle into 4, every tetrahedron into 8, so many times",
                             "convert", options->refine, &options->refine, NULL));
+  PetscCall(PetscOptionsReal("-scale", "multiply all coordinates by this factor", "convert", options->scale,
+                             &options->scale, NULL));
   PetscCall(PetscOptionsBool("-boundary",
                              "write the surface around a solid: its boundary vertices in their order, triangles that "
                              "look outward",
@@ -87,7 +91,7 @@ static PetscErrorCode PrintUsage(void)
   PetscFunctionBegin;
   PetscCall(PetscPrintf(
       PETSC_COMM_WORLD,
-      "\nusage: equimap convert IN OUT [-prepare LIST] [-repair] [-refine TIMES] [-boundary]\n"
+      "\nusage: equimap convert IN OUT [-prepare LIST] [-repair] [-refine TIMES] [-scale FACTOR] [-boundary]\n"
       "The suffix of OUT chooses its format; IN's is seen from its content. Vertices keep their numbers; new ones\n"
       "come after them.\n"));
   PetscFunctionReturn(0);
@@ -115,6 +119,7 @@ PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-refine %" PetscInt_FMT ": give 0 or more", options.refine);
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
   if (soup->note[0]) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "note: %s: %s\n", soup->file, soup->note));
+  if (options.scale != 1.) PetscCall(EqmSoupScale(soup, options.scale));
   PetscCall(Prepare(&options.prepare, &soup));
   if (options.refine) PetscCall(EqmSoupRefine(&soup, options.refine));
   if (options.boundary) PetscCall(TakeBoundary(&soup));

@@ -226,6 +226,7 @@ static PetscErrorCode Measure(const EqmCommandLine *line, const MeasureOptions *
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &m.ledger));
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &m.soup));
   if (options->density[0]) PetscCall(EqmSoupReadDensity(m.soup, options->density));
+  PetscCall(EqmSoupCheckExtent(m.soup));
   PetscCall(CheckMeasurable(m.soup));
   PetscCall(ReadMap(options, line->argument[1], &m));
   PetscCall(MeasureMap(line->argument[1], &m));

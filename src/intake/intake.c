@@ -143,6 +143,7 @@ static PetscErrorCode Read(MPI_Comm comm, const EqmIntakeOptions *options, EqmIn
     PetscCall(EqmKeptMeshRead(comm, options->mesh, &intake->given));
   else
     PetscCall(EqmSoupRead(comm, options->mesh, &intake->given));
+  PetscCall(EqmSoupCheckExtent(intake->given));
   if (options->density) PetscCall(EqmSoupReadDensity(intake->given, options->density));
   *plain = intake->given;
   if (options->noise == 0.) PetscFunctionReturn(0);
