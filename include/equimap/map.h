@@ -34,6 +34,7 @@ typedef struct {
    1e-12. */
 enum { EQM_NUM_RATIO_BINS = 202 };
 
+/* The histogram of ratios, the same on every rank. */
 typedef struct {
   PetscReal reach;
   PetscInt64 cells[EQM_NUM_RATIO_BINS]; /* how many cells have a ratio in the bin */

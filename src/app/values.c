@@ -94,7 +94,9 @@ static PetscErrorCode CheckValue(const EqmOption *option, const char *value)
 /* What is to be written into a folder needs a name there. Rank 0 looks. */
 static PetscErrorCode CheckFolder(const EqmOption *option, const char *value)
 {
-  static const char *const written[] = {"-o", "-summary", "-history", "-histogram", "-ratio_histogram", "-checkpoint"};
+  static const char *const written[] = {"-o",       "-uv",        "-summary",
+                                        "-history", "-histogram", "-ratio_histogram",
+                                        "-cells",   "-vertices",  "-checkpoint"};
   PetscBool is_written = PETSC_FALSE, is_folder = PETSC_FALSE;
   PetscMPIInt rank;
   char **names, message[EQM_MESSAGE_MAX] = "";
