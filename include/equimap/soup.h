@@ -138,7 +138,7 @@ typedef enum {
   EQM_FINDING_OVERLAP,            /* faces with both their tetrahedra on the same side */
   EQM_FINDING_COMPONENTS,         /* more than one connected component */
   EQM_FINDING_HOLES,              /* boundary loops beyond the one that a disk has */
-  EQM_FINDING_GENUS,              /* handles */
+  EQM_FINDING_GENUS,              /* handles; `where` is one short loop around or through one, vertex by vertex */
   EQM_FINDING_CLOSED,             /* no boundary, where the command wants one */
   EQM_FINDING_OPEN,               /* a boundary, where the command wants none */
   EQM_FINDING_WRONG_CELLS,        /* triangles where tetrahedra are wanted, or the other way round */

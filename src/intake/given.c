@@ -23,17 +23,30 @@ static void Normal(const PetscReal *corner, PetscReal normal[3])
   EqmCross(u, v, normal);
 }
 
-/* Does a cell of the prepared mesh, per cell of its slab, run the other way round than the one it comes from? Parts of
-   a triangle lie in its plane. Tetrahedra are turned when the mesh is made. */
-static PetscErrorCode FindTurned(const EqmIntake *intake, PetscInt num, const PetscInt *child, const PetscInt *parent,
-                                 PetscInt *turned)
+/* Is a corner of a part an added vertex where a corner of the whole is? Then the surface has been cut apart there. */
+static PetscBool IsCut(PetscInt num_given, const PetscInt *corner, const PetscReal *before, const PetscReal *after)
+{
+  for (int a = 0; a < 3; a++) {
+    if (corner[a] < num_given) continue;
+    for (int b = 0; b < 3; b++) {
+      const PetscReal *const x = before + 3 * b, *const y = after + 3 * a;
+      if (x[0] == y[0] && x[1] == y[1] && x[2] == y[2]) return PETSC_TRUE;
+    }
+  }
+  return PETSC_FALSE;
+}
+
+/* What has become of the cells that parts come from, a value per part. Parts of a triangle lie in its plane, so normals
+   tell whether they were turned over. Tetrahedra are turned when the mesh is made, and never cut apart. */
+static PetscErrorCode CompareParts(const EqmIntake *intake, PetscInt num, const PetscInt *child, const PetscInt *parent,
+                                   PetscInt *value)
 {
   const EqmSoup given = intake->given, mapped = intake->mapped;
   PetscInt *corner;
   PetscReal *before, *after;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(turned, num));
+  for (PetscInt k = 0; k < num; k++) value[k] = EQM_CELL_MAPPED;
   if (given->cell_size != 3) PetscFunctionReturn(0);
   PetscCall(PetscMalloc3(3 * num, &corner, 9 * num, &before, 9 * num, &after));
   PetscCall(
@@ -48,18 +61,20 @@ static PetscErrorCode FindTurned(const EqmIntake *intake, PetscInt num, const Pe
 
     Normal(before + 9 * k, m);
     Normal(after + 9 * k, n);
-    turned[k] = EqmDot3(m, n) < 0.;
+    if (EqmDot3(m, n) < 0.) value[k] = EQM_CELL_TURNED;
+    if (IsCut(given->num_vertices, corner + 3 * k, before + 9 * k, after + 9 * k)) value[k] = EQM_CELL_CUT;
   }
   PetscCall(PetscFree3(corner, before, after));
   PetscFunctionReturn(0);
 }
 
-/* Per cell of the file's slab: 0 not mapped, 1 mapped, 2 mapped turned over. */
-static PetscErrorCode MarkCells(const EqmIntake *intake, PetscInt *mark)
+/* EqmIntakeMarkCells - what has become of the file's cells: an EqmCellFate per cell of the slab. Collective. */
+PetscErrorCode EqmIntakeMarkCells(const EqmIntake *intake, PetscInt *mark)
 {
   const PetscInt count = intake->given->cell_end - intake->given->cell_start;
   const PetscInt num = intake->mapped->cell_end - intake->mapped->cell_start;
   PetscInt num_children = 0, *child, *parent, *value;
+  PetscSF sf;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(num, &child, num, &parent, num, &value));
@@ -68,15 +83,17 @@ static PetscErrorCode MarkCells(const EqmIntake *intake, PetscInt *mark)
     child[num_children] = c;
     parent[num_children++] = intake->parent[c];
   }
-  PetscCall(FindTurned(intake, num_children, child, parent, value));
-  for (PetscInt k = 0; k < num_children; k++) value[k]++;
-  PetscCall(PetscArrayzero(mark, count));
-  PetscCall(EqmPutRows(intake->given->comm, count, num_children, parent, MPIU_INT, 1, value, mark));
+  PetscCall(CompareParts(intake, num_children, child, parent, value));
+  for (PetscInt c = 0; c < count; c++) mark[c] = EQM_CELL_LEFT_OUT;
+  PetscCall(EqmRowsCreateSF(intake->given->comm, count, num_children, parent, &sf));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_INT, value, mark, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_INT, value, mark, MPI_MAX));
+  PetscCall(PetscSFDestroy(&sf));
   PetscCall(PetscFree3(child, parent, value));
   PetscFunctionReturn(0);
 }
 
-/* All vertices of the file, and those of its cells that have been mapped, turned as they were. */
+/* All vertices of the file, and those of its cells that have been mapped and not cut apart, turned as they were. */
 static PetscErrorCode CollectMapped(EqmSoup given, const PetscInt *mark, MappedCells *cells)
 {
   const PetscInt cs = given->cell_size, count = given->cell_end - given->cell_start;
@@ -93,9 +110,9 @@ static PetscErrorCode CollectMapped(EqmSoup given, const PetscInt *mark, MappedC
   for (PetscInt c = 0; c < count; c++) {
     PetscInt *const v = corner + cs * num, last = given->cells[cs * c + cs - 1];
 
-    if (!mark[c]) continue;
+    if (mark[c] != EQM_CELL_MAPPED && mark[c] != EQM_CELL_TURNED) continue;
     PetscCall(PetscArraycpy(v, given->cells + cs * c, cs));
-    if (mark[c] == 2) {
+    if (mark[c] == EQM_CELL_TURNED) {
       v[cs - 1] = v[cs - 2];
       v[cs - 2] = last;
     }
@@ -125,7 +142,7 @@ static PetscErrorCode TakeMeasures(EqmMap measured, const MappedCells *cells, Eq
 }
 
 /* What the prepared mesh's own map is like goes beside; folds of the file's own cells decide how the run has ended. */
-static PetscErrorCode Judge(EqmMap found, const char *target, EqmMap map)
+static PetscErrorCode Judge(EqmMap found, const char *target, PetscInt64 num_cut, EqmMap map)
 {
   const PetscBool keeps_angles = (PetscBool)!strcmp(target, "conformal");
   const PetscInt64 folds = map->distortion.folds;
@@ -136,6 +153,7 @@ static PetscErrorCode Judge(EqmMap found, const char *target, EqmMap map)
   PetscCall(EqmMapAddFigure(map, "prepared_mesh.ratio_min", found->distortion.ratio.min));
   PetscCall(EqmMapAddFigure(map, "prepared_mesh.ratio_max", found->distortion.ratio.max));
   PetscCall(EqmMapAddCount(map, "prepared_mesh.folds", found->distortion.folds));
+  PetscCall(EqmMapAddCount(map, "prepared_mesh.cells_cut_off", num_cut));
   if (!keeps_angles) PetscCall(EqmMapSetEnergies(map, map->energy_initial, map->distortion.energy));
   if (folds == 0 || (map->status != EQM_STATUS_CONVERGED && map->status != EQM_STATUS_NOT_CONVERGED))
     PetscFunctionReturn(0);
@@ -150,12 +168,14 @@ static PetscErrorCode Judge(EqmMap found, const char *target, EqmMap map)
 /* EqmIntakeMeasureGiven - measure a map on the cells of the file, where a prepared mesh has been mapped in their place.
 
    Collective. found - the map of intake->mapped; map - as EqmIntakeTakeMap made it of `found`: gets distortion, ratios,
-   energy and status of the file's mesh; those of the prepared mesh become figures `prepared_mesh`. Where nothing was
-   prepared, nothing happens. */
+   energy and status of the file's mesh; those of the prepared mesh become figures `prepared_mesh`. Cells at which the
+   surface was cut apart have two images of a vertex, which the file's numbering cannot hold: they are not measured,
+   their number is a figure, their images are in the prepared mesh. Where nothing was prepared, nothing happens. */
 PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, EqmMap found, EqmMap map)
 {
   const EqmSoup given = intake->given;
   MappedCells cells;
+  PetscInt64 num_cut = 0;
   PetscInt *mark;
   PetscReal *x;
   EqmMap measured;
@@ -164,7 +184,7 @@ PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, 
   PetscFunctionBegin;
   if (map == found) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(given->cell_end - given->cell_start, &mark));
-  PetscCall(MarkCells(intake, mark));
+  PetscCall(EqmIntakeMarkCells(intake, mark));
   PetscCall(CollectMapped(given, mark, &cells));
   PetscCall(EqmMeshCreate(cells.soup, ledger, &mesh));
   PetscCall(EqmMapCreate(cells.soup, map->dim, &measured));
@@ -172,7 +192,9 @@ PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, 
   PetscCall(EqmMeshVerticesFromInput(mesh, cells.soup, map->dim, map->coordinates, x));
   PetscCall(EqmMapMeasure(measured, mesh, x));
   PetscCall(TakeMeasures(measured, &cells, map));
-  PetscCall(Judge(found, intake->target, map));
+  for (PetscInt c = 0; c < given->cell_end - given->cell_start; c++) num_cut += mark[c] == EQM_CELL_CUT;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &num_cut, 1, MPIU_INT64, MPI_SUM, given->comm));
+  PetscCall(Judge(found, intake->target, num_cut, map));
   PetscCall(PetscFree(x));
   PetscCall(EqmMapDestroy(&measured));
   PetscCall(EqmMeshDestroy(&mesh));

@@ -1,6 +1,5 @@
 /* The mesh that a run is given: read, prepared and repaired if asked, refused if it cannot be mapped. */
 #include "intake/intake.h"
-#include "base/rows.h"
 #include "mesh/target.h"
 #include "store/keptmesh.h"
 #include "store/map_private.h"
@@ -200,28 +199,21 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   PetscFunctionReturn(0);
 }
 
-/* Add to the result which cells of the input have been mapped: 1, and which left out: 0. */
+/* Add to the result which cells of the input have been mapped: 1, which left out: 0, and at which the surface was cut
+   apart, so that their images are in the prepared mesh alone: 2. */
 static PetscErrorCode MarkLeftOut(const EqmIntake *intake, EqmMap map)
 {
   const EqmSoup given = intake->given;
-  const PetscInt count = given->cell_end - given->cell_start,
-                 num = intake->mapped->cell_end - intake->mapped->cell_start;
-  PetscInt num_children = 0, *child, *one, *mark;
+  const PetscInt count = given->cell_end - given->cell_start;
+  PetscInt *mark;
   PetscInt64 *mapped;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(num, &child, num, &one));
+  PetscCall(PetscMalloc1(count, &mark));
   PetscCall(PetscMalloc1(count + 1, &mapped));
-  PetscCall(PetscCalloc1(count, &mark));
-  for (PetscInt c = 0; c < num; c++) {
-    if (intake->parent[c] < 0) continue;
-    one[num_children] = 1;
-    child[num_children++] = intake->parent[c];
-  }
-  PetscCall(EqmPutRows(given->comm, count, num_children, child, MPIU_INT, 1, one, mark));
-  for (PetscInt c = 0; c < count; c++) mapped[c] = mark[c];
+  PetscCall(EqmIntakeMarkCells(intake, mark));
+  for (PetscInt c = 0; c < count; c++) mapped[c] = mark[c] == EQM_CELL_LEFT_OUT ? 0 : mark[c] == EQM_CELL_CUT ? 2 : 1;
   PetscCall(EqmMapAddIntegers(map, "/cell/mapped", given->num_cells, given->cell_start, count, 0, mapped));
-  PetscCall(PetscFree2(child, one));
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);
 }

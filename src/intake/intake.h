@@ -45,6 +45,9 @@ PETSC_INTERN PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions 
                                           EqmIntake *intake);
 PETSC_INTERN PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap found, EqmMap *map);
 /* ---- given.c */
+/* What has become of a cell of the file; of its parts the highest counts. */
+typedef enum { EQM_CELL_LEFT_OUT, EQM_CELL_MAPPED, EQM_CELL_TURNED, EQM_CELL_CUT } EqmCellFate;
+PETSC_INTERN PetscErrorCode EqmIntakeMarkCells(const EqmIntake *intake, PetscInt *mark);
 PETSC_INTERN PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, EqmMap found, EqmMap map);
 /* ---- intake.c */
 PETSC_INTERN PetscErrorCode EqmIntakeDestroy(EqmIntake *intake);

@@ -5,7 +5,7 @@
 typedef enum { MINDED_BY_ALL, MINDED_BY_NONE, MINDED_BY_DISK, MINDED_BY_SPHERE } Minded;
 
 /* How the numbers in `where` are shown. */
-typedef enum { SHOW_NOTHING, SHOW_ONE, SHOW_EDGE, SHOW_TWINS } Show;
+typedef enum { SHOW_NOTHING, SHOW_ONE, SHOW_EDGE, SHOW_TWINS, SHOW_LOOP } Show;
 
 typedef struct {
   EqmFindingKind kind;
@@ -64,7 +64,7 @@ static const Phrase phrases[] = {
      "there is 1 cavity inside, with one vertex of each boundary surface named",
      "there are {n} cavities inside, with one vertex of each boundary surface named",
      "fill the cavities with tetrahedra"},
-    {EQM_FINDING_GENUS, 3, MINDED_BY_ALL, SHOW_NOTHING, "the surface has 1 handle, like a cup",
+    {EQM_FINDING_GENUS, 3, MINDED_BY_ALL, SHOW_LOOP, "the surface has 1 handle, like a cup",
      "the surface has {n} handles", "cut or fill the handles; tiny ones are often errors of a scan"},
     {EQM_FINDING_GENUS, 4, MINDED_BY_ALL, SHOW_NOTHING, "the solid has 1 tunnel through it",
      "the solid has {n} tunnels", "fill the tunnels or cut the solid open; a ball has none"},
@@ -133,10 +133,16 @@ static PetscErrorCode AppendPhrase(const EqmDiagnosis *diagnosis, const char *ph
 static PetscErrorCode AppendWhere(const EqmFinding *finding, Show show, char *text, size_t length)
 {
   PetscFunctionBegin;
+  const PetscBool is_loop = (PetscBool)(show == SHOW_LOOP);
+
   if (show == SHOW_NOTHING || !finding->shown) PetscFunctionReturn(0);
-  PetscCall(PetscStrlcat(text, finding->count > finding->shown ? " (first: " : " (", length));
+  PetscCall(PetscStrlcat(text,
+                         is_loop                           ? " (around or through one: "
+                         : finding->count > finding->shown ? " (first: "
+                                                           : " (",
+                         length));
   for (PetscInt i = 0; i < finding->shown; i++) {
-    if (i) PetscCall(PetscStrlcat(text, ", ", length));
+    if (i) PetscCall(PetscStrlcat(text, is_loop ? "-" : ", ", length));
     for (int k = 0; k < 4 && finding->where[i][k] >= 0; k++) {
       const char *const between = show == SHOW_TWINS ? " like " : "-";
       char number[48];
@@ -145,6 +151,7 @@ static PetscErrorCode AppendWhere(const EqmFinding *finding, Show show, char *te
       PetscCall(PetscStrlcat(text, number, length));
     }
   }
+  if (is_loop && finding->where[EQM_FINDING_SHOWN - 1][3] >= 0) PetscCall(PetscStrlcat(text, "-...", length));
   PetscCall(PetscStrlcat(text, ")", length));
   PetscFunctionReturn(0);
 }

@@ -9,6 +9,7 @@ static const EqmPrepareStep steps[] = {
     {"split", "remove duplicate cells, cut non-manifold edges and vertices apart, turn what disagrees", EqmStepSplit},
     {"largest", "keep the largest piece (-piece K: the K-th)", EqmStepLargest},
     {"holes", "fill all boundary loops but the longest, for a sphere all", EqmStepHoles},
+    {"handles", "cut small handles (-handle_length) and fill both sides", EqmStepHandles},
 };
 enum { NUM_STEPS = sizeof(steps) / sizeof(steps[0]) };
 
@@ -18,6 +19,7 @@ void EqmPrepareOptionsInit(EqmPrepareOptions *options)
   strcpy(options->steps, "none");
   options->piece = 1;
   options->hole_weight = 1.;
+  options->handle_length = .1;
 }
 
 /* Is a step named in a list that is separated by commas? */
@@ -58,7 +60,8 @@ PetscErrorCode EqmPrepareSetFromOptions(PetscOptionItems *PetscOptionsObject, Eq
   PetscFunctionBegin;
   PetscCall(PetscOptionsString("-prepare",
                                "before the map: auto (what the mesh needs), none, or a list of weld, split, largest, "
-                               "holes: join seams, cut non-manifold parts apart, keep the largest piece, fill holes",
+                               "holes, handles: join seams, cut non-manifold parts apart, keep the largest piece, fill "
+                               "holes, cut small handles",
                                NULL, options->steps, options->steps, sizeof(options->steps), NULL));
   PetscCall(PetscOptionsInt("-piece", "of -prepare largest: which piece to keep, 1 is the largest", NULL,
                             options->piece, &options->piece, NULL));
@@ -69,11 +72,18 @@ PetscErrorCode EqmPrepareSetFromOptions(PetscOptionItems *PetscOptionsObject, Eq
       PetscOptionsReal("-weld_tolerance",
                        "of -prepare weld: boundary vertices this close are one, as a share of the mesh's diameter",
                        NULL, options->weld_tolerance, &options->weld_tolerance, NULL));
+  PetscCall(
+      PetscOptionsReal("-handle_length",
+                       "of -prepare handles: handles with a loop of at most this length are cut, as a share of the "
+                       "mesh's diameter",
+                       NULL, options->handle_length, &options->handle_length, NULL));
   PetscCall(CheckList(options->steps));
   if (options->piece < 1)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-piece %" PetscInt_FMT ": give 1 or more", options->piece);
   if (!(options->hole_weight > 0.) || PetscIsInfReal(options->hole_weight))
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-hole_weight %g: give a positive number", (double)options->hole_weight);
+  if (!(options->handle_length >= 0.))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-handle_length %g: give 0 or more", (double)options->handle_length);
   if (!(options->weld_tolerance >= 0.) || options->weld_tolerance > .1) {
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-weld_tolerance %g: give a share of the mesh's diameter, 0 to 0.1",
             (double)options->weld_tolerance);

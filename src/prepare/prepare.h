@@ -12,6 +12,7 @@ typedef struct {
   PetscInt piece;           /* of `largest`: which piece to keep, 1 is the largest */
   PetscReal hole_weight;    /* of `holes`: density of the cells that fill holes */
   PetscReal weld_tolerance; /* of `weld`: distance, as a share of the mesh's diameter */
+  PetscReal handle_length;  /* of `handles`: loops up to this length, as a share of the mesh's diameter, are cut */
   PetscBool repair;         /* at the end EqmSoupRepair */
   const char *target;       /* a target's name, or NULL: what the mesh's topology asks for */
 } EqmPrepareOptions;
@@ -38,7 +39,7 @@ typedef struct {
 
 /* Defaults. Not collective. */
 PETSC_INTERN void EqmPrepareOptionsInit(EqmPrepareOptions *options);
-/* Read -prepare, -piece, -hole_weight and -weld_tolerance. Collective, between PetscOptionsBegin and
+/* Read -prepare, -piece, -hole_weight, -weld_tolerance and -handle_length. Collective, between PetscOptionsBegin and
    PetscOptionsEnd. Errors: EQM_ERR_USAGE (values out of range, a step that does not exist). */
 PETSC_INTERN PetscErrorCode EqmPrepareSetFromOptions(PetscOptionItems *PetscOptionsObject, EqmPrepareOptions *options);
 /* Prepare a mesh, which stays as it is. Collective; the same on any number of ranks. `preparation` has steps only if

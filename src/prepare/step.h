@@ -23,6 +23,7 @@ PETSC_INTERN PetscErrorCode EqmStepWeld(const EqmPrepareOptions *, EqmChange *, 
 PETSC_INTERN PetscErrorCode EqmStepSplit(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
 PETSC_INTERN PetscErrorCode EqmStepLargest(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
 PETSC_INTERN PetscErrorCode EqmStepHoles(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
+PETSC_INTERN PetscErrorCode EqmStepHandles(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
 PETSC_INTERN PetscErrorCode EqmStepRepair(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
 
 /* Replace the soup of a change by one with these added vertices and the cells of the list. Collective. */

@@ -133,10 +133,48 @@ def test_seam(run):
     assert "-weld_tolerance" in wide.stderr
 
 
+def test_handle(run, run_alone):
+    """A sheet with a thin bridge between two of its squares: the handle is placed, refused while it is large, cut else."""
+    points, cells = sheet(holes={(5, 10), (13, 10)})
+    corners = [[(a + c) * (N + 1) + 10 + d for c, d in ((0, 0), (1, 0), (1, 1), (0, 1))] for a in (5, 13)]
+    rings, steps = [corners[0]], 9
+    low, high = (numpy.array([points[v] for v in ring]) for ring in corners)
+    for k in range(1, steps):  # the bridge rises from one hole and comes down in the other, mirrored
+        t = k / steps
+        ring = (1 - t) * low + t * high[[1, 0, 3, 2]] + [0, 0, 4 * numpy.sin(numpy.pi * t)]
+        rings.append(list(range(len(points), len(points) + 4)))
+        points += [tuple(x) for x in ring]
+    rings.append([corners[1][k] for k in (1, 0, 3, 2)])
+    for one, two in zip(rings, rings[1:]):
+        for k in range(4):
+            a, b, c, d = one[k], one[(k + 1) % 4], two[(k + 1) % 4], two[k]
+            cells += [(a, b, c), (a, c, d)]
+    write_obj("bridge.obj", points, cells)
+    told = run("check", "bridge.obj", "-summary", "check.json", expected=(3,)).stdout
+    assert "the surface has 1 handle" in told and "around or through one: " in told, told
+    with open("check.json") as file:
+        where = json.load(file)["findings"]["genus"]["where"]
+    loop = [v for part in where for v in part]
+    edges = {frozenset(pair) for c in cells for pair in ((c[0], c[1]), (c[1], c[2]), (c[0], c[2]))}
+    assert len(loop) == 4 and all(frozenset((loop[k], loop[(k + 1) % 4])) in edges for k in range(4)), loop
+    refused = run("disk", "bridge.obj", "-prepare", "auto", "-o", "t.h5", "-handle_length", ".01", expected=(3,))
+    assert "1 handle" in refused.stderr
+    run("disk", "bridge.obj", "-prepare", "auto", "-o", "b.h5", "-handle_length", ".3", "-summary", "b.json", expected=(0, 4))
+    assert steps_of("b.json")["handles"] == 1
+    with h5py.File("b.h5") as file:
+        fate = file["cell/mapped"][:]
+        assert (fate > 0).all() and 4 <= (fate == 2).sum() <= 40 and file.attrs["prepared_mesh.cells_cut_off"] == (fate == 2).sum()
+    run("convert", "bridge.obj", "b.obj", "-prepare", "handles", "-handle_length", ".3")
+    run_alone("convert", "bridge.obj", "b1.obj", "-prepare", "handles", "-handle_length", ".3")
+    with open("b.obj") as one, open("b1.obj") as other:
+        assert one.read() == other.read(), "the same on any number of ranks"
+    assert "genus 0" in run("check", "b.obj").stdout
+
+
 def test_usage(run):
     points, cells, _, _ = scan()
     write_obj("scan.obj", points, cells)
-    assert "weld, split, largest, holes" in run("disk", "scan.obj", "-prepare", "mend", "-o", "t.h5", expected=(2,)).stderr
+    assert "weld, split, largest, holes, handles" in run("disk", "scan.obj", "-prepare", "mend", "-o", "t.h5", expected=(2,)).stderr
     assert "there are only" in run("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "9", expected=(2,)).stderr
     done = run("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "3")
     assert " 2 triangles" in done.stdout, done.stdout  # the island; the fin is larger
@@ -157,6 +195,7 @@ def main(equimap, ranks):
     test_scan(run, runner("1"))
     test_hole_weight(run)
     test_seam(run)
+    test_handle(run, runner("1"))
     test_usage(run)
     print("prepare: holes filled, pieces left out, seams sewn, non-manifold parts cut apart")
 
