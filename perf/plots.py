@@ -78,6 +78,6 @@ def draw(tables, name, exponent, efficiencies):
         axes.grid(True, color="0.9")
         axes.set_axisbelow(True)
         if axes.get_legend_handles_labels()[0]:
-            axes.legend(frameon=False, fontsize=8)
+            axes.legend(framealpha=.9, fontsize=8)
     figure.savefig(name, dpi=120)
     pyplot.close(figure)
