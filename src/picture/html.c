@@ -3,38 +3,17 @@
 #include "picture/html.h"
 #include "picture/figures.h"
 #include "picture/surface.h"
+#include "picture/turn.h"
+#include "format/encoding.h"
 #include <stddef.h>
 #include <string.h>
 
-/* Bytes to base64, three at a time; what is left over waits for the next piece. */
-typedef struct {
-  EqmAtomicFile *file;
-  unsigned char waiting[3];
-  int count;
-} Encoder;
-
-static void Flush(Encoder *encoder)
-{
-  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const unsigned char *w = encoder->waiting;
-  char text[4] = {digits[w[0] >> 2], digits[(w[0] & 3) << 4 | w[1] >> 4], digits[(w[1] & 15) << 2 | w[2] >> 6],
-                  digits[w[2] & 63]};
-
-  for (int k = encoder->count + 1; k < 4; k++) text[k] = '=';
-  if (encoder->count > 0) EqmAtomicWrite(encoder->file, text, 4);
-  encoder->waiting[0] = encoder->waiting[1] = encoder->waiting[2] = 0;
-  encoder->count = 0;
-}
-
 static cairo_status_t Encode(void *closure, const unsigned char *bytes, unsigned int length)
 {
-  Encoder *encoder = (Encoder *)closure;
+  EqmBase64Writer *const writer = (EqmBase64Writer *)closure;
 
-  for (unsigned int k = 0; k < length; k++) {
-    encoder->waiting[encoder->count++] = bytes[k];
-    if (encoder->count == 3) Flush(encoder);
-  }
-  return encoder->file->error_number ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
+  EqmBase64Write(writer, bytes, length);
+  return writer->file->error_number ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
 }
 
 /* Text from outside is shown as it is, whatever characters it has. */
@@ -87,7 +66,8 @@ static void PrintHead(EqmAtomicFile *file, const EqmPage *page)
       "img{width:100%;height:auto}\ntable{border-collapse:collapse;margin:1rem 0}\n"
       "th{text-align:left;font-weight:400;color:#6b7078;padding:.2rem 1.5rem .2rem 0;vertical-align:top}\n"
       "td{padding:.2rem 1.5rem .2rem 0;font-variant-numeric:tabular-nums;overflow-wrap:anywhere}\n"
-      "tr{border-bottom:1px solid #e2e4e6}\n");
+      "tr{border-bottom:1px solid #e2e4e6}\n"
+      ".turn canvas{width:49%;touch-action:none;cursor:grab}\n.turn p{color:#6b7078}\n");
 }
 
 /* The result's number, where there are several. */
@@ -162,14 +142,17 @@ static void PrintHistory(EqmAtomicFile *file, const EqmResult *result)
 
 PetscErrorCode EqmWriteHtml(const EqmPage *page, int width, EqmAtomicFile *file, cairo_status_t *status)
 {
-  Encoder encoder = {file, {0, 0, 0}, 0};
+  EqmBase64Writer writer;
 
   PetscFunctionBegin;
   PrintHead(file, page);
   EqmAtomicPrint(file, "<img alt=\"the surface, its image and the convergence\" src=\"data:image/png;base64,");
-  PetscCall(EqmPageToPng(page, width, Encode, &encoder, status));
-  Flush(&encoder);
+  EqmBase64Open(&writer, file);
+  PetscCall(EqmPageToPng(page, width, Encode, &writer, status));
+  EqmBase64Close(&writer);
   EqmAtomicPrint(file, "\">\n");
+  EqmWriteTurningScript(file);
+  for (PetscInt k = 0; k < page->num; k++) PetscCall(EqmWriteTurning(page, k, file));
   PrintFigures(file, page);
   PrintProvenance(file, page);
   for (PetscInt k = 0; k < page->num; k++) PrintHistory(file, &page->results[k]);

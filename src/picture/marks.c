@@ -48,7 +48,7 @@ void EqmDrawMarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, 
     place[drawn][0] = x;
     place[drawn][1] = y;
     for (int k = 0; k < drawn; k++) { /* numbers do not hide each other */
-      if (fabs(place[k][0] - x) < 45 && fabs(place[k][1] - place[drawn][1]) < 14) {
+      if (fabs(place[k][0] - x) < 45 && fabs(place[k][1] - place[drawn][1]) < 13.5) {
         place[drawn][1] = place[k][1] + 14;
         k = -1;
       }
