@@ -37,6 +37,9 @@ PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStat
 /* How the work is laid out: -threads, which main takes before any command (asked again to be listed by --help), and
    what belongs to the mesh. Collective. */
 PETSC_INTERN PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject);
+/* -resume: where the file of -checkpoint is there already, it becomes that of -restart. Errors: EQM_ERR_USAGE.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmTakeResume(void);
 /* Remember which options PETSc has that are none of the command line's. Call before others are inserted. Collective. */
 PETSC_INTERN PetscErrorCode EqmNoteForeignOptions(int argc, char **argv);
 PETSC_INTERN PetscErrorCode EqmForgetForeignOptions(void);

@@ -130,6 +130,7 @@ static PetscErrorCode Run(EqmCommandLine *line, EqmStatus *status)
     PetscCall(PrintHelp(row, line));
   } else {
     PetscCall(EqmCheckOptionValues(line));
+    PetscCall(EqmTakeResume());
     PetscCall(SetThreads());
     PetscCall(row->run(line, status));
     PetscCall(EqmWarnOfUnusedOptions());

@@ -50,12 +50,53 @@ static PetscBool IsTrusted(const char *name)
 PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject)
 {
   PetscInt threads = -1; /* main has taken it */
+  PetscBool resume = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsInt("-threads",
                             "threads per rank (-1: OMP_NUM_THREADS, else all the cores that the rank may use)", NULL,
                             threads, &threads, NULL));
   PetscCall(EqmMeshHelpOptions(PetscOptionsObject));
+  PetscCall(PetscOptionsBool("-resume",
+                             "go on from -checkpoint if it is there, else begin: the same command the first time and "
+                             "after every interruption",
+                             NULL, resume, &resume, NULL)); /* EqmTakeResume has */
+  PetscFunctionReturn(0);
+}
+
+/* Is there a checkpoint of that name, of a registration's first minimisation, or the one before either? On rank 0. */
+static PetscErrorCode HasCheckpoint(const char *file, PetscBool *there)
+{
+  static const char *const endings[] = {"", ".previous", ".1", ".1.previous"};
+
+  PetscFunctionBegin;
+  *there = PETSC_FALSE;
+  for (size_t k = 0; k < sizeof(endings) / sizeof(endings[0]) && !*there; k++) {
+    char name[PETSC_MAX_PATH_LEN];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s%s", file, endings[k]));
+    PetscCall(PetscTestFile(name, 'r', there));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmTakeResume(void)
+{
+  char file[PETSC_MAX_PATH_LEN];
+  PetscBool resume = PETSC_FALSE, has_checkpoint, restarts, there = PETSC_FALSE;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-resume", &resume, NULL));
+  if (!resume) PetscFunctionReturn(0);
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-checkpoint", file, sizeof(file), &has_checkpoint));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-restart", &restarts));
+  if (!has_checkpoint || restarts)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-resume goes with -checkpoint FILE, and without -restart");
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  if (rank == 0) PetscCall(HasCheckpoint(file, &there));
+  PetscCallMPI(MPI_Bcast(&there, 1, MPIU_BOOL, 0, PETSC_COMM_WORLD));
+  if (there) PetscCall(PetscOptionsSetValue(NULL, "-restart", file));
   PetscFunctionReturn(0);
 }
 

@@ -7,6 +7,8 @@ import os
 import sys
 import tempfile
 
+import h5py
+
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 from program import Program  # noqa: E402
 
@@ -33,6 +35,7 @@ REFUSED = [
     (["disk", "mesh.obj", "-o", "folder"], ["-o folder is a folder"]),
     (["disk", "mesh.obj", "-o", "x.h5,folder"], ["-o folder is a folder"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-summary", "folder"], ["-summary folder is a folder"]),
+    (["disk", "mesh.obj", "-o", "x.h5", "-resume"], ["-resume goes with -checkpoint"]),
     (["convert", "mesh.obj", "x.obj", "-refine"], ["-refine needs a value"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-method", "fixedpoint"], ["-method fixedpoint", "did you mean fixed-point?"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-start", "gaurded"], ["-start gaurded", "did you mean guarded?"]),
@@ -65,6 +68,17 @@ def check_spellings(program):
     assert len(set(energies)) == 1, energies
     program.succeed("disk", "--repair", "mesh.obj", "--dry-run", "-o", "y.h5")  # flags take no value
     program.succeed("disk", "mesh.obj", "-repair", "true", "-dry_run", "-o", "y.h5")  # unless one is given
+
+
+def check_resume(program):
+    """The same command begins, and goes on where it stopped: to the same map as in one go."""
+    run = ["disk", "mesh.obj", "-energy_rtol", 0, "-ratio_tol", 0]
+    program.succeed(*run, "-o", "whole.h5", "-max_it", 4, codes=(4,))
+    for max_it in (2, 4):
+        program.succeed(*run, "-o", "resumed.h5", "-max_it", max_it, "-checkpoint", "run.ck", "-resume", codes=(4,))
+    with h5py.File(program.file("whole.h5")) as whole, h5py.File(program.file("resumed.h5")) as resumed:
+        assert resumed["history/iteration"][...].tolist() == [0, 1, 2, 3, 4]
+        assert abs(whole["map/coordinates"][...] - resumed["map/coordinates"][...]).max() == 0
 
 
 def check_log_view(program):
@@ -128,6 +142,7 @@ def main():
         os.mkdir(program.file("folder"))
         check_refused(program)
         check_spellings(program)
+        check_resume(program)
         check_log_view(program)
         if program.ranks == 1:
             check_help(program)
