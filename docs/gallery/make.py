@@ -28,7 +28,7 @@ ITEMS = {
              ["equimap generate hills -n 20000 -o hills.h5"], "equimap disk hills.h5 -o map.h5 -balance .01"),
     "square": ("A rolled sheet, to the square", "Its four corners go to those of the square.",
                ["equimap generate patch -n 10000 -o patch.h5"], "equimap square patch.h5 -o map.h5"),
-    "sphere": ("A closed blob, to the sphere", "Areas agree to four digits; the colours show what is left.",
+    "sphere": ("A closed blob, to the sphere", "Areas agree to three digits everywhere, so that no colour shows.",
                ["equimap generate head -n 10000 -o head.h5"], "equimap sphere head.h5 -o map.h5"),
     "ball": ("A bent solid, to the ball", "Volumes of tetrahedra are kept, in the inside as well.",
              ["equimap generate blob -n 10000 -o blob.h5"], "equimap ball blob.h5 -o map.h5"),
@@ -81,7 +81,7 @@ def section(name, figures):
     elif name != "register":
         told.insert(1, f"E {figures['energy']:.1e}")
     commands = "\n".join(f"    {line}" for line in [*meshes, command, f"equimap report map.h5 -o {name}.png"])
-    return f"## {title}\n\n{words}\n\n{commands}\n\n{', '.join(told)}, on one core.\n\n![{title}](gallery/{name}.png)\n"
+    return f"## {title}\n\n{words}\n\n{commands}\n\n{', '.join(told)}.\n\n![{title}](gallery/{name}.png)\n"
 
 
 def main():
@@ -90,7 +90,8 @@ def main():
     figures = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     figures.update({name: make(name, program) for name in names})
     kept.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
-    text = ["# Gallery\n", "Six maps of generated meshes; [gallery/make.py](gallery/make.py) makes this page and its pictures.\n"]
+    text = ["# Gallery\n", "Six maps of generated meshes; [gallery/make.py](gallery/make.py) makes this page and its pictures. "
+            "Seconds are of one core of a machine that was busy otherwise.\n"]
     text += [section(name, figures[name]) for name in ITEMS if name in figures]
     (HERE.parent / "gallery.md").write_text("\n".join(text), encoding="utf-8")
 
