@@ -11,22 +11,40 @@
 #include <equimap/mesh.h>
 #include <equimap/simplex.h>
 
-/* The manifold that a vertex lives on. */
-typedef enum {
-  EQM_VERTEX_FREE,   /* anywhere in R^dim */
-  EQM_VERTEX_CIRCLE, /* on the unit circle: one degree of freedom, the angle */
-  EQM_VERTEX_SIDE_X, /* along a horizontal side: the first coordinate */
-  EQM_VERTEX_SIDE_Y, /* along a vertical side: the second coordinate */
-  EQM_VERTEX_SPHERE, /* on the unit sphere: two degrees of freedom in the place's own frame */
-  EQM_VERTEX_ANGLES, /* on the unit sphere: its spherical coordinates, polar angle and azimuth */
-  EQM_VERTEX_FIXED   /* nowhere else */
-} EqmVertexKind;
+/* How vertices of one kind move: operations on one vertex, x its place, `stored` its three reals in EqmPlace's frame
+   (NULL where the domain keeps none). A new kind is one such row in a file of its own. Called by several threads at
+   once. */
+typedef struct {
+  const char *name;
+  PetscInt num_dofs; /* EQM_DOFS_OF_SPACE: as many as the space has dimensions */
+  /* The directions of the degrees of freedom as columns, dim reals each; orthonormal unless `stored` are angles. */
+  void (*frame)(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal *frame);
+  /* Follow the geodesic of the velocity `dofs` for time t: to y and new_stored, which may be x and stored. */
+  void (*retract)(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal t, const PetscScalar *dofs,
+                  PetscReal *y, PetscReal *new_stored);
+  void (*choose_frame)(const PetscReal *x, PetscReal *stored); /* for a place from outside; NULL: nothing is stored */
+  /* Progress from p to its neighbour q along the boundary; NULL: the boundary is no curve. */
+  PetscReal (*advance)(const PetscReal *p, const PetscReal *q);
+  PetscReal curvature;  /* geodesics of unit speed have the acceleration -curvature x */
+  PetscBool is_free[3]; /* does this coordinate move as it likes, whatever the others do? */
+} EqmVertexMotion;
+enum { EQM_DOFS_OF_SPACE = -1, EQM_MAX_MOTIONS = 8 };
+
+/* The kinds that the library comes with. */
+PETSC_EXTERN const EqmVertexMotion EqmMotionFree;         /* anywhere in R^dim */
+PETSC_EXTERN const EqmVertexMotion EqmMotionCircle;       /* on the unit circle: one degree of freedom, the angle */
+PETSC_EXTERN const EqmVertexMotion EqmMotionHeldOnCircle; /* at its place on the unit circle */
+PETSC_EXTERN const EqmVertexMotion EqmMotionSideX;        /* along a horizontal side: the first coordinate */
+PETSC_EXTERN const EqmVertexMotion EqmMotionSideY;        /* along a vertical side: the second coordinate */
+PETSC_EXTERN const EqmVertexMotion EqmMotionCorner;       /* at its corner of the square */
+PETSC_EXTERN const EqmVertexMotion EqmMotionSphere; /* on the unit sphere: two degrees of freedom in its own frame */
+PETSC_EXTERN const EqmVertexMotion EqmMotionAngles; /* on the unit sphere: polar angle and azimuth (003 (4), (5)) */
 
 /* A configuration: the place of every local vertex, ghosts included and up to date. */
 typedef struct {
   PetscReal *x;     /* dim * num_local */
   PetscReal *frame; /* of vertices on the sphere, 3 * num_local: the first tangent vector, the second is place x first;
-                       of EQM_VERTEX_ANGLES the two angles; NULL where there are none such */
+                       of EqmMotionAngles the two angles; NULL where there are none such */
 } EqmPlace;
 
 /* Where each vertex of a mesh may go, and how it gets there. */
@@ -38,36 +56,54 @@ struct _p_EqmDomain {
   EqmMeasureKind measure; /* of image cells */
   PetscBool
       curved_image; /* image cells can fold without a change of sign of their measure: look at EQM_MEASURE_HALF_DET */
-  PetscBool spherical_coordinates; /* vertices on the sphere move by their angles */
-  PetscInt dim;                    /* coordinates of a place: 2 or 3 */
-  unsigned char *kind;             /* EqmVertexKind per local vertex */
-  PetscInt *dof_start;             /* per local vertex: place of its first degree of freedom in the global vector */
-  unsigned char *dof_count;        /* per local vertex */
-  PetscInt num_dofs, dof_first;    /* owned degrees of freedom, and the global number of the first */
-  EqmVertexKind kind_of_boundary;  /* where boundary vertices live: the circle, or the sides of the square */
-  PetscReal target_measure;        /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
-  PetscReal boundary_length;       /* of the target: 2 pi, 4 */
-  PetscReal corner_arc[4];         /* square: arc lengths of the corners */
+  PetscBool spherical_coordinates;                /* vertices on the sphere move by their angles */
+  PetscInt dim;                                   /* coordinates of a place: 2 or 3 */
+  const EqmVertexMotion *motion[EQM_MAX_MOTIONS]; /* the kinds of vertices, NULL behind the last */
+  unsigned char *kind;                            /* per local vertex: its place in `motion` */
+  PetscInt *dof_start;          /* per local vertex: place of its first degree of freedom in the global vector */
+  unsigned char *dof_count;     /* per local vertex */
+  PetscInt num_dofs, dof_first; /* owned degrees of freedom, and the global number of the first */
+  PetscBool has_frames;         /* some kind stores three reals per vertex */
+  PetscReal target_measure;     /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
+  PetscReal boundary_length;    /* of the target: 2 pi, 4 */
+  PetscReal corner_arc[4];      /* square: arc lengths of the corners */
   PetscErrorCode (*place_boundary)(EqmDomain, EqmPlace *);
   PetscReal *arc_length; /* per local vertex: arc length along the boundary loop in [0, 1), -1 inside (disk, square) */
 };
 
-/* The unit disk: boundary vertices on the circle, the others free (000 (6), (7)). The mesh must be of disk type.
-   Collective. */
+/* What steers the creation of a domain; each takes what concerns it. */
+typedef struct {
+  const PetscInt *corners;     /* square: four input vertex numbers; NULL: at quarters of the boundary's arc length */
+  const char *boundary_angles; /* disk: a CSV file of boundary vertices and the angles that hold them; NULL: none */
+} EqmDomainOptions;
+/* A domain as it is registered: a name, and how it is made for a mesh. */
+typedef struct {
+  const char *name;
+  PetscErrorCode (*create)(EqmMesh, const EqmDomainOptions *, EqmDomain *);
+} EqmDomainType;
+/* Make a domain known; `type` must outlive the program's use of it. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainRegister(const EqmDomainType *type);
+/* A domain by name, for a mesh; `options` may be NULL. Errors: EQM_ERR_USAGE (no such domain), EQM_ERR_MESH.
+ * Collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainCreate(EqmMesh mesh, const char *name, const EqmDomainOptions *options,
+                                            EqmDomain *domain);
+
+/* "disk", the unit disk: boundary vertices on the circle, the others free (000 (6), (7)). The mesh must be of disk
+   type. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateDisk(EqmMesh mesh, EqmDomain *domain);
-/* The unit square: four corners fixed, side vertices slide, the others free (002 section 4.1). `corners`: four input
-   vertex numbers on the boundary, in any rotation of the boundary's order, the first goes to (0,0); NULL: at quarters
-   of the boundary's arc length. Collective. */
+/* "held-disk": the same with boundary vertices held at given angles, per local vertex, which must grow once round along
+   the boundary (000 section 6, h_B = R f_B). Errors: EQM_ERR_USAGE (they do not). Collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainCreateHeldDisk(EqmMesh mesh, const PetscReal *angle, EqmDomain *domain);
+/* "square", the unit square: four corners fixed, side vertices slide, the others free (002 section 4.1). `corners`:
+   four input vertex numbers on the boundary, in any rotation of the boundary's order, the first goes to (0,0); NULL: at
+   quarters of the boundary's arc length. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], EqmDomain *domain);
-/* The unit sphere: every vertex on it (001 (2.1)). The mesh must be closed, of genus 0. Collective. */
+/* "sphere", the unit sphere: every vertex on it (001 (2.1)). The mesh must be closed, of genus 0. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateSphere(EqmMesh mesh, EqmDomain *domain);
-/* The unit ball: boundary vertices on the sphere, the others free in space (003 section 3). The mesh must be a solid.
-   Collective. */
-PETSC_EXTERN PetscErrorCode EqmDomainCreateBall(EqmMesh mesh, EqmDomain *domain);
-/* Let the vertices on the sphere move by their spherical coordinates (003 (4), (5)): no isometry, but the coordinates
-   that 003 Algorithm 1 is written in. To be called before any place is made. Not collective. */
-PETSC_EXTERN PetscErrorCode EqmDomainTakeSphericalCoordinates(EqmDomain domain);
-/* Free a domain. Collective; NULL is fine. */
+/* "ball", the unit ball: boundary vertices on the sphere, the others free in space (003 section 3); with `angles`, as
+   "spherical-ball", they move by their spherical coordinates (003 (4), (5)): no isometry, but the coordinates that 003
+   Algorithm 1 is written in. The mesh must be a solid. Collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainCreateBall(EqmMesh mesh, PetscBool angles, EqmDomain *domain);
 PETSC_EXTERN PetscErrorCode EqmDomainDestroy(EqmDomain *domain);
 
 /* A place for every local vertex of the domain's mesh, at zero; free it again; copy one into another of the same
@@ -111,5 +147,11 @@ PETSC_EXTERN PetscErrorCode EqmPlaceCenter(EqmDomain domain, const PetscReal *ma
 
 /* The frame of local vertex v at `place`: column k of the dim x count matrix is frame[dim k .. dim k + dim - 1]. */
 PETSC_EXTERN PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, PetscReal frame[9]);
+
+/* The kind of a local vertex. Not collective. */
+static inline const EqmVertexMotion *EqmDomainMotion(EqmDomain domain, PetscInt v)
+{
+  return domain->motion[domain->kind[v]];
+}
 
 #endif

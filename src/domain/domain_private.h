@@ -1,15 +1,19 @@
-/* Shared by the files of this room. */
+/* Shared by the files of this folder. */
 #ifndef EQM_DOMAIN_PRIVATE_H
 #define EQM_DOMAIN_PRIVATE_H
 
 #include <equimap/domain.h>
 
-PETSC_INTERN PetscErrorCode EqmDomainCreatePlanar(EqmMesh mesh, const char *name, EqmDomain *domain,
-                                                  PetscInt **loop_place);
+/* A planar domain without kinds of vertices yet, with the arc length of the boundary. Collective. */
+PETSC_INTERN PetscErrorCode EqmDomainCreatePlanar(EqmMesh mesh, const char *name, EqmDomain *domain);
+/* Number the degrees of freedom once motions and kinds are known: each rank's in the order of its vertices. Collective.
+ */
 PETSC_INTERN PetscErrorCode EqmDomainNumber(EqmDomain domain);
-PETSC_INTERN void EqmFromAngles(const PetscReal angle[2], PetscReal x[3], PetscReal by_polar[3],
-                                PetscReal by_azimuth[3]);
-PETSC_INTERN void EqmToAngles(const PetscReal x[3], PetscReal angle[2]);
-PETSC_INTERN PetscReal EqmSquareAdvance(const PetscReal p[2], const PetscReal q[2]);
+/* The retraction of kinds without degrees of freedom. Not collective. */
+PETSC_INTERN void EqmRetractNowhere(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal t,
+                                    const PetscScalar *dofs, PetscReal *y, PetscReal *new_stored);
+
+/* held-disk, its angles from the file that the options name. Collective. */
+PETSC_INTERN PetscErrorCode EqmDomainReadHeldDisk(EqmMesh mesh, const EqmDomainOptions *options, EqmDomain *domain);
 
 #endif

@@ -24,11 +24,11 @@ PetscErrorCode EqmDomainCreateSphere(EqmMesh mesh, EqmDomain *out)
   domain->dim = 3;
   domain->measure = EQM_MEASURE_AREA3;
   domain->curved_image = PETSC_TRUE;
-  domain->kind_of_boundary = EQM_VERTEX_SPHERE;
+  domain->motion[0] = &EqmMotionSphere;
+  domain->has_frames = PETSC_TRUE;
   domain->target_measure = 4. * PETSC_PI;
   domain->place_boundary = NoBoundary;
-  PetscCall(PetscMalloc1(mesh->num_local, &domain->kind));
-  for (PetscInt v = 0; v < mesh->num_local; v++) domain->kind[v] = EQM_VERTEX_SPHERE;
+  PetscCall(PetscCalloc1(mesh->num_local, &domain->kind));
   PetscCall(EqmDomainNumber(domain));
   *out = domain;
   PetscFunctionReturn(0);

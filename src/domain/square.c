@@ -2,16 +2,10 @@
  */
 #include "domain/domain_private.h"
 
-static const PetscReal corner_place[4][2] = {{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}};
+/* Kinds of vertices. */
+enum { FREE, SIDE_X, SIDE_Y, CORNER };
 
-/* The signed length from p to q, neighbours on the boundary, along the side that they share. */
-PetscReal EqmSquareAdvance(const PetscReal p[2], const PetscReal q[2])
-{
-  if (p[1] == 0. && q[1] == 0.) return q[0] - p[0];
-  if (p[0] == 1. && q[0] == 1.) return q[1] - p[1];
-  if (p[1] == 1. && q[1] == 1.) return p[0] - q[0];
-  return p[1] - q[1];
-}
+static const PetscReal corner_place[4][2] = {{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}};
 
 /* Which side a boundary vertex lies on and how far along it, from arc lengths. At a corner the fraction is 0. */
 static PetscInt SideOf(const PetscReal corner_arc[4], PetscReal arc, PetscReal *fraction)
@@ -110,7 +104,6 @@ static PetscErrorCode CornersAtQuarters(EqmMesh mesh, const PetscReal *arc, Pets
 PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], EqmDomain *out)
 {
   EqmDomain domain;
-  PetscInt *loop_place;
 
   PetscFunctionBegin;
   if (mesh->num_boundary_vertices < 4) {
@@ -118,9 +111,11 @@ PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], Eq
             "a map to the square needs at least four boundary vertices, this mesh has %" PetscInt_FMT,
             mesh->num_boundary_vertices);
   }
-  PetscCall(EqmDomainCreatePlanar(mesh, "square", &domain, &loop_place));
-  PetscCall(PetscFree(loop_place));
-  domain->kind_of_boundary = EQM_VERTEX_SIDE_X;
+  PetscCall(EqmDomainCreatePlanar(mesh, "square", &domain));
+  domain->motion[FREE] = &EqmMotionFree;
+  domain->motion[SIDE_X] = &EqmMotionSideX;
+  domain->motion[SIDE_Y] = &EqmMotionSideY;
+  domain->motion[CORNER] = &EqmMotionCorner;
   domain->target_measure = 1.;
   domain->boundary_length = 4.;
   domain->place_boundary = PlaceOnSides;
@@ -132,11 +127,11 @@ PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], Eq
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     PetscReal t;
     if (domain->arc_length[v] < 0.) {
-      domain->kind[v] = EQM_VERTEX_FREE;
+      domain->kind[v] = FREE;
       continue;
     }
     const PetscInt side = SideOf(domain->corner_arc, domain->arc_length[v], &t);
-    domain->kind[v] = t == 0. ? EQM_VERTEX_FIXED : side % 2 == 0 ? EQM_VERTEX_SIDE_X : EQM_VERTEX_SIDE_Y;
+    domain->kind[v] = t == 0. ? CORNER : side % 2 == 0 ? SIDE_X : SIDE_Y;
   }
   PetscCall(EqmDomainNumber(domain));
   *out = domain;

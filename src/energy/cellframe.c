@@ -23,7 +23,7 @@ static const EqmCellFrame plain = {
 static PetscBool AreFree(EqmDomain domain, PetscInt count, const PetscInt *vertex)
 {
   for (PetscInt a = 0; a < count; a++) {
-    if (domain->kind[vertex[a]] != EQM_VERTEX_FREE) return PETSC_FALSE;
+    if (EqmDomainMotion(domain, vertex[a]) != &EqmMotionFree) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

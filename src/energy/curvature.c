@@ -48,8 +48,9 @@ void EqmCellDifferentiate(EqmDomain domain, const EqmPlace *place, PetscInt cell
   }
   for (PetscInt i = 0; i < d->frame.count;
        i++) { /* a geodesic of unit speed on a circle or sphere has the acceleration -x */
-    const PetscInt a = d->frame.corner[i], kind = domain->kind[v[a]];
-    if (kind != EQM_VERTEX_CIRCLE && kind != EQM_VERTEX_SPHERE) continue;
-    for (PetscInt c = 0; c < dim; c++) d->second[i][i] -= gradient[dim * a + c] * p[a][c];
+    const PetscInt a = d->frame.corner[i];
+    const PetscReal curvature = EqmDomainMotion(domain, v[a])->curvature;
+    if (curvature == 0.) continue;
+    for (PetscInt c = 0; c < dim; c++) d->second[i][i] -= curvature * gradient[dim * a + c] * p[a][c];
   }
 }

@@ -116,7 +116,7 @@ static PetscErrorCode Pass(EqmMethod method, EqmIterate iterate)
     PetscFunctionReturn(0);
   }
   PetscCall(EqmLaplacianWeights(method->problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, fp->weights));
-  if (method->problem->domain->kind_of_boundary == EQM_VERTEX_CIRCLE) {
+  if (method->problem->domain->motion[1] == &EqmMotionCircle) {
     PetscCall(StepOnDisk(method, iterate));
   } else {
     PetscCall(EqmHarmonicMap(method->problem, fp->weights, &iterate->place, &fp->to));

@@ -77,13 +77,6 @@ PetscErrorCode EqmGroupApply(EqmProblem problem, PetscInt num_rhs, PetscReal *co
   PetscFunctionReturn(0);
 }
 
-/* May coordinate c of a vertex of this kind move? */
-static PetscBool CoordinateIsFree(EqmVertexKind kind, PetscInt c)
-{
-  return (PetscBool)(kind == EQM_VERTEX_FREE || (kind == EQM_VERTEX_SIDE_X && c == 0) ||
-                     (kind == EQM_VERTEX_SIDE_Y && c == 1));
-}
-
 /* Add to z, where it is not held, the solution of L d = -L z with what is factored. */
 static PetscErrorCode AddCorrection(EqmProblem problem, const PetscReal *weights, const signed char *group,
                                     PetscInt width, PetscReal *z)
@@ -171,7 +164,7 @@ PetscErrorCode EqmHarmonicMap(EqmProblem problem, const PetscReal *weights, cons
   PetscCall(EqmPlaceCopy(domain, from, to));
   for (PetscInt c = 0; c < domain->dim; c++) {
     for (PetscInt v = 0; v < mesh->num_local; v++) {
-      group[c * mesh->num_local + v] = CoordinateIsFree((EqmVertexKind)domain->kind[v], c) ? 0 : EQM_GROUP_FIXED;
+      group[c * mesh->num_local + v] = EqmDomainMotion(domain, v)->is_free[c] ? 0 : EQM_GROUP_FIXED;
       differs |= group[c * mesh->num_local + v] != group[v];
     }
   }

@@ -37,7 +37,7 @@ static PetscErrorCode CreateLaplacian(EqmProblem problem, EqmMetric metric)
   PetscCall(PetscMalloc4(mesh->num_local_cells, &metric->mass, dim * mesh->num_owned, &metric->columns,
                          dim * mesh->num_local, &metric->ambient, mesh->num_local, &metric->group));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
-    metric->group[v] = problem->domain->kind[v] == EQM_VERTEX_FIXED ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
+    metric->group[v] = problem->domain->dof_count[v] == 0 ? EQM_GROUP_FIXED : mesh->on_boundary[v] ? 1 : 0;
   }
   PetscFunctionReturn(0);
 }

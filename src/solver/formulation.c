@@ -4,37 +4,6 @@
 #include "unfold/unfold.h"
 #include <string.h>
 
-/* ---- domains */
-static PetscErrorCode CreateDisk(EqmSolver solver, EqmDomain *domain)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmDomainCreateDisk(solver->mesh, domain));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CreateSquare(EqmSolver solver, EqmDomain *domain)
-{
-  PetscFunctionBegin;
-  PetscCall(
-      EqmDomainCreateSquare(solver->mesh, solver->settings.has_corners ? solver->settings.corners : NULL, domain));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CreateSphere(EqmSolver solver, EqmDomain *domain)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmDomainCreateSphere(solver->mesh, domain));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CreateBall(EqmSolver solver, EqmDomain *domain)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmDomainCreateBall(solver->mesh, domain));
-  if (solver->defaults.spherical_coordinates) PetscCall(EqmDomainTakeSphericalCoordinates(*domain));
-  PetscFunctionReturn(0);
-}
-
 /* ---- settings of methods */
 static PetscErrorCode ConfigureConformalLbfgs(EqmMethod lbfgs)
 {
@@ -53,38 +22,38 @@ static PetscErrorCode ConfigureBallLbfgs(EqmMethod lbfgs)
 
 /* ---- methods: name, registered as, first map, -max_it, -energy_rtol, -ratio_tol, -gradient_tol, settings */
 static const EqmMethodDefaults in_plane[] = {
-    {"lm", "lm", "guarded", 60, .05, 1e-4, 0., NULL, PETSC_FALSE},
-    {"fixed-point", "fixed-point", "harmonic", 100, 1e-4, 0., 0., NULL, PETSC_FALSE},
-    {"ncg", "ncg", "fixed-point", 100, 1e-4, 0., 0., NULL, PETSC_FALSE},
-    {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, PETSC_FALSE},
-    {"rgd", "rgd", "guarded", 100, 1e-6, 0., 0., NULL, PETSC_FALSE},
+    {"lm", "lm", "guarded", 60, .05, 1e-4, 0., NULL, NULL},
+    {"fixed-point", "fixed-point", "harmonic", 100, 1e-4, 0., 0., NULL, NULL},
+    {"ncg", "ncg", "fixed-point", 100, 1e-4, 0., 0., NULL, NULL},
+    {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, NULL},
+    {"rgd", "rgd", "guarded", 100, 1e-6, 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults on_sphere[] = {
-    {"lm", "lm", "guarded", 60, .05, 1e-4, 0., NULL, PETSC_FALSE},
-    {"fixed-point", "fixed-point", "linear", 100, 1e-4, 0., 0., NULL, PETSC_FALSE},
-    {"ncg", "ncg", "guarded", 100, 1e-4, 0., 0., NULL, PETSC_FALSE},
-    {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, PETSC_FALSE},
-    {"rgd", "rgd", "descending", 100, 1e-6, 0., 0., NULL, PETSC_FALSE},
+    {"lm", "lm", "guarded", 60, .05, 1e-4, 0., NULL, NULL},
+    {"fixed-point", "fixed-point", "linear", 100, 1e-4, 0., 0., NULL, NULL},
+    {"ncg", "ncg", "guarded", 100, 1e-4, 0., 0., NULL, NULL},
+    {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, NULL},
+    {"rgd", "rgd", "descending", 100, 1e-6, 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults conformal_in_disk[] = {
-    {"riemann", "riemann", "arc-length", 100, 0., 0., 1e-5, NULL, PETSC_FALSE},
-    {"qiem", "covering", "harmonic", 500, 0., 0., 0., NULL, PETSC_FALSE},
+    {"riemann", "riemann", "arc-length", 100, 0., 0., 1e-5, NULL, NULL},
+    {"qiem", "covering", "harmonic", 500, 0., 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults conformal_on_sphere[] = {
-    {"lbfgs", "lbfgs", "conformal", 100, 0., 0., 1e-5, ConfigureConformalLbfgs, PETSC_FALSE},
-    {"qiem", "qiem", "normals", 500, 0., 0., 0., NULL, PETSC_FALSE},
-    {"euler-explicit", "euler-explicit", "gauss", 10000, 0., 0., 0., NULL, PETSC_FALSE},
-    {"euler-implicit", "euler-implicit", "gauss", 500, 0., 0., 0., NULL, PETSC_FALSE},
+    {"lbfgs", "lbfgs", "conformal", 100, 0., 0., 1e-5, ConfigureConformalLbfgs, NULL},
+    {"qiem", "qiem", "normals", 500, 0., 0., 0., NULL, NULL},
+    {"euler-explicit", "euler-explicit", "gauss", 10000, 0., 0., 0., NULL, NULL},
+    {"euler-implicit", "euler-implicit", "gauss", 500, 0., 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults in_ball[] = {
-    {"lbfgs", "lbfgs", "fixed-point", 500, 1e-8, 0., 0., ConfigureBallLbfgs, PETSC_FALSE},
-    {"newton", "newton", "fixed-point", 300, 1e-9, 0., 0., NULL, PETSC_FALSE},
-    {"fixed-point", "fixed-point", "harmonic", 500, 1e-6, 0., 0., NULL, PETSC_FALSE},
-    {"ncg", "ncg", "fixed-point", 500, 1e-6, 0., 0., NULL, PETSC_TRUE},
+    {"lbfgs", "lbfgs", "fixed-point", 500, 1e-8, 0., 0., ConfigureBallLbfgs, NULL},
+    {"newton", "newton", "fixed-point", 300, 1e-9, 0., 0., NULL, NULL},
+    {"fixed-point", "fixed-point", "harmonic", 500, 1e-6, 0., 0., NULL, NULL},
+    {"ncg", "ncg", "fixed-point", 500, 1e-6, 0., 0., NULL, "spherical-ball"},
 };
 
 #define METHODS(list) .methods = (list), .num_methods = sizeof(list) / sizeof((list)[0])
@@ -92,35 +61,30 @@ static const EqmMethodDefaults in_ball[] = {
 static const EqmFormulation formulations[] = {
     {.target = "disk",
      .domain = "disk",
-     .create_domain = CreateDisk,
      .objective = &EqmObjectiveAuthalic,
      .starts = EQM_STARTS_PLANE,
      .takes_balance = PETSC_TRUE,
      METHODS(in_plane)},
     {.target = "square",
      .domain = "square",
-     .create_domain = CreateSquare,
      .objective = &EqmObjectiveAuthalic,
      .starts = EQM_STARTS_PLANE,
      .takes_balance = PETSC_TRUE,
      METHODS(in_plane)},
     {.target = "sphere",
      .domain = "sphere",
-     .create_domain = CreateSphere,
      .objective = &EqmObjectiveAuthalic,
      .unfold = EqmSphereUnfold,
      .starts = EQM_STARTS_SPHERE,
      METHODS(on_sphere)},
     {.target = "conformal",
      .domain = "disk",
-     .create_domain = CreateDisk,
      .objective = &EqmObjectiveConformal,
      .unfold = EqmDiskUnfold,
      .starts = EQM_STARTS_PLANE,
      METHODS(conformal_in_disk)},
     {.target = "conformal",
      .domain = "sphere",
-     .create_domain = CreateSphere,
      .objective = &EqmObjectiveConformal,
      .unfold = EqmSphereUnfold,
      .finish = EqmConformalFinish,
@@ -128,7 +92,6 @@ static const EqmFormulation formulations[] = {
      METHODS(conformal_on_sphere)},
     {.target = "ball",
      .domain = "ball",
-     .create_domain = CreateBall,
      .objective = &EqmObjectiveAuthalic,
      .unfold = EqmBallUnfold,
      .starts = EQM_STARTS_BALL,

@@ -15,12 +15,11 @@ typedef struct {
   PetscInt max_it;
   PetscReal energy_rtol, ratio_tol, gradient_tol;
   PetscErrorCode (*configure)(EqmMethod); /* settings of the method's own; NULL: as it is created */
-  PetscBool spherical_coordinates;        /* ball: the boundary moves by its angles */
+  const char *domain;                     /* NULL: the formulation's */
 } EqmMethodDefaults;
 
 typedef struct {
   const char *target, *domain; /* of the tables in mesh/target.c; several rows of a target are told apart by the mesh */
-  PetscErrorCode (*create_domain)(EqmSolver, EqmDomain *);
   const EqmObjective *objective;
   PetscErrorCode (*unfold)(EqmProblem, EqmIterate, PetscInt64 *before, PetscInt64 *after); /* NULL: cannot */
   PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */

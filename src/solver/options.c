@@ -122,6 +122,13 @@ static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOption
                              "EqmSolverSetFromOptions", set->balance, &set->balance, NULL));
   if (!solver->prefix[0]) PetscCall(ReadRunOptions(set, PetscOptionsObject)); /* one for all that runs */
   if (!strcmp(solver->formulation->domain, "square")) PetscCall(ReadCorners(solver, PetscOptionsObject));
+  if (!strcmp(solver->target, "disk"))
+    PetscCall(
+        PetscOptionsString("-boundary_angles",
+                           "hold the boundary: a CSV file with a line per boundary vertex, its number (from 0) and "
+                           "its angle in radians, after a header",
+                           "EqmSolverSetFromOptions", set->boundary_angles, set->boundary_angles,
+                           sizeof(set->boundary_angles), NULL));
   PetscFunctionReturn(0);
 }
 

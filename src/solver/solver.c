@@ -48,10 +48,15 @@ static PetscErrorCode StopRequested(void *context, PetscBool *stop)
 
 static PetscErrorCode CreateProblem(EqmSolver solver)
 {
+  const EqmSolverSettings *const set = &solver->settings;
+  const EqmDomainOptions options = {.corners = set->has_corners ? set->corners : NULL,
+                                    .boundary_angles = set->boundary_angles[0] ? set->boundary_angles : NULL};
   EqmDomain domain;
 
   PetscFunctionBegin;
-  PetscCall(solver->formulation->create_domain(solver, &domain));
+  PetscCall(EqmDomainCreate(solver->mesh,
+                            solver->defaults.domain ? solver->defaults.domain : solver->formulation->domain, &options,
+                            &domain));
   PetscCall(EqmProblemCreate(domain, solver->formulation->objective, &solver->problem));
   PetscCall(PetscStrncpy(solver->problem->prefix, solver->prefix, sizeof(solver->problem->prefix)));
   solver->problem->notify = EqmSolverNotify;

@@ -17,6 +17,7 @@ typedef struct {
   PetscInt inner_steps; /* of lm, before its options are read */
   PetscBool quiet, has_corners;
   PetscInt corners[4];
+  char boundary_angles[PETSC_MAX_PATH_LEN];                         /* disk: a file; empty: none */
   char checkpoint[PETSC_MAX_PATH_LEN], restart[PETSC_MAX_PATH_LEN]; /* empty: none */
   PetscInt checkpoint_every;                                        /* iterations; 0: only at the end */
   EqmNormaliseSettings normalise;                                   /* conformal, closed surfaces */

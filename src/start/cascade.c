@@ -9,7 +9,7 @@ static const PetscInt most_gathered = 1000000;
 static EqmCascadeTarget TargetOf(EqmDomain domain)
 {
   if (domain->dim == 3) return EQM_TARGET_SPHERE;
-  return domain->kind_of_boundary == EQM_VERTEX_CIRCLE ? EQM_TARGET_DISK : EQM_TARGET_SQUARE;
+  return domain->motion[1] == &EqmMotionCircle ? EQM_TARGET_DISK : EQM_TARGET_SQUARE;
 }
 
 static PetscErrorCode Cascade(EqmProblem problem, EqmIterate iterate, EqmCascadeResult *result)
@@ -25,7 +25,7 @@ static PetscErrorCode Cascade(EqmProblem problem, EqmIterate iterate, EqmCascade
   PetscFunctionBegin;
   PetscCall(EqmDomainPlaceBoundary(domain, &iterate->place));
   PetscCall(PetscMalloc2(mesh->num_local, &corner, mesh->rank == 0 ? domain->dim * mesh->num_vertices : 0, &x));
-  for (PetscInt v = 0; v < mesh->num_local; v++) corner[v] = (PetscBool)(domain->kind[v] == EQM_VERTEX_FIXED);
+  for (PetscInt v = 0; v < mesh->num_local; v++) corner[v] = (PetscBool)(EqmDomainMotion(domain, v) == &EqmMotionCorner);
   PetscCall(EqmHierarchyOptionsDefault(&levels));
   PetscCall(EqmCascadeOptionsDefault(&options));
   levels.corner = corner;
@@ -47,7 +47,9 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   EqmCascadeResult result = {.folds = 0};
 
   PetscFunctionBegin;
-  if (problem->mesh->size > 1 && problem->mesh->num_vertices > most_gathered) {
+  if (problem->domain->motion[1] == &EqmMotionHeldOnCircle) {
+    PetscCall(EqmProblemNotify(problem, "the start cascade moves the boundary, which is held: guarded instead\n"));
+  } else if (problem->mesh->size > 1 && problem->mesh->num_vertices > most_gathered) {
     PetscCall(EqmProblemNotify(problem,
                                "the start cascade works on one rank: not from several for more than %" PetscInt_FMT
                                " vertices; guarded instead\n",

@@ -138,9 +138,8 @@ static PetscErrorCode TestSquareFixedPoint(void)
   for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) scale = PetscMax(scale, PetscAbsReal(residual[k]));
   scale = TestMax(mesh->comm, scale); /* the forces that hold the sides in place */
   for (PetscInt k = 0; k < 2 * mesh->num_owned; k++) {
-    const EqmVertexKind kind = (EqmVertexKind)before->problem->domain->kind[k / 2];
-    const PetscBool free =
-        (PetscBool)(kind == EQM_VERTEX_FREE || kind == (k % 2 ? EQM_VERTEX_SIDE_Y : EQM_VERTEX_SIDE_X));
+    const EqmVertexMotion *const kind = EqmDomainMotion(before->problem->domain, k / 2);
+    const PetscBool free = (PetscBool)(kind == &EqmMotionFree || kind == (k % 2 ? &EqmMotionSideY : &EqmMotionSideX));
     if (free)
       CHECK_CLOSE(residual[k], 0., 1e-11, scale);
     else

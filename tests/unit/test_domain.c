@@ -55,7 +55,7 @@ static PetscErrorCode TestFrames(EqmDomain domain, const EqmPlace *place)
       for (PetscInt j = 0; j < count; j++) {
         CHECK_CLOSE(frame[2 * i] * frame[2 * j] + frame[2 * i + 1] * frame[2 * j + 1], i == j ? 1. : 0., 1e-14, 1.);
       }
-      if (domain->kind[v] == EQM_VERTEX_CIRCLE) { /* tangent, the angle growing */
+      if (EqmDomainMotion(domain, v) == &EqmMotionCircle) { /* tangent, the angle growing */
         CHECK_CLOSE(frame[0] * place->x[2 * v] + frame[1] * place->x[2 * v + 1], 0., 1e-14, 1.);
         CHECK(place->x[2 * v] * frame[1] - place->x[2 * v + 1] * frame[0] > 0., "vertex %d runs backwards", (int)v);
       }
@@ -85,13 +85,13 @@ static PetscErrorCode TestStaysOnBoundary(EqmDomain domain, const EqmPlace *star
   }
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     const PetscReal *const x = place.x + 2 * v, *const s = start->x + 2 * v;
-    const EqmVertexKind kind = (EqmVertexKind)domain->kind[v];
-    if (kind == EQM_VERTEX_CIRCLE) CHECK_CLOSE(x[0] * x[0] + x[1] * x[1], 1., 1e-15, 1.);
-    if (kind == EQM_VERTEX_SIDE_X || kind == EQM_VERTEX_FIXED)
+    const EqmVertexMotion *const kind = EqmDomainMotion(domain, v);
+    if (kind == &EqmMotionCircle) CHECK_CLOSE(x[0] * x[0] + x[1] * x[1], 1., 1e-15, 1.);
+    if (kind == &EqmMotionSideX || kind == &EqmMotionCorner)
       CHECK(x[1] == s[1], "%.17g left its side %.17g", (double)x[1], (double)s[1]);
-    if (kind == EQM_VERTEX_SIDE_Y || kind == EQM_VERTEX_FIXED)
+    if (kind == &EqmMotionSideY || kind == &EqmMotionCorner)
       CHECK(x[0] == s[0], "%.17g left its side %.17g", (double)x[0], (double)s[0]);
-    if (kind == EQM_VERTEX_FREE) CHECK(x[0] != s[0] && x[1] != s[1], "vertex %d has not moved", (int)v);
+    if (kind == &EqmMotionFree) CHECK(x[0] != s[0] && x[1] != s[1], "vertex %d has not moved", (int)v);
     if (v < mesh->num_owned) PetscCall(PetscArraycpy(check.x + 2 * v, x, 2));
   }
   PetscCall(EqmMeshUpdateGhosts(mesh, 2, check.x));
@@ -117,7 +117,7 @@ static PetscErrorCode Wind(EqmDomain domain, PetscReal turns, PetscReal shift, E
 {
   PetscFunctionBegin;
   for (PetscInt v = 0; v < domain->mesh->num_local; v++) {
-    if (domain->kind[v] != EQM_VERTEX_CIRCLE) continue;
+    if (EqmDomainMotion(domain, v) != &EqmMotionCircle) continue;
     const PetscReal angle = 2. * PETSC_PI * turns * domain->arc_length[v] + shift;
     place->x[2 * v] = PetscCosReal(angle);
     place->x[2 * v + 1] = PetscSinReal(angle);
@@ -251,12 +251,12 @@ static PetscErrorCode TestCorners(EqmMesh mesh, const PetscInt *loop, const Pets
     if (k == at[side]) {
       CHECK(x[0] == wanted[side][0] && x[1] == wanted[side][1], "corner %d at (%g, %g)", (int)side, (double)x[0],
             (double)x[1]);
-      CHECK(domain->kind[v] == EQM_VERTEX_FIXED, "corner %d can move", (int)side);
+      CHECK(EqmDomainMotion(domain, v) == &EqmMotionCorner, "corner %d can move", (int)side);
     } else {
       CHECK(x[(side + 1) % 2] == wanted[side][(side + 1) % 2], "(%g, %g) is not on side %d", (double)x[0], (double)x[1],
             (int)side);
-      CHECK(domain->kind[v] == (side % 2 ? EQM_VERTEX_SIDE_Y : EQM_VERTEX_SIDE_X), "side %d, kind %d", (int)side,
-            (int)domain->kind[v]);
+      CHECK(EqmDomainMotion(domain, v) == (side % 2 ? &EqmMotionSideY : &EqmMotionSideX), "side %d, kind %s", (int)side,
+            EqmDomainMotion(domain, v)->name);
       CHECK(x[side % 2] > 0. && x[side % 2] < 1., "(%g, %g) is past a corner", (double)x[0], (double)x[1]);
     }
   }

@@ -298,7 +298,7 @@ static PetscErrorCode TestSolid(void)
 
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "ball", 600, 3, &test));
-  PetscCall(EqmDomainCreateBall(test.mesh, &domain));
+  PetscCall(EqmDomainCreateBall(test.mesh, PETSC_FALSE, &domain));
   PetscCall(EqmPlaceCreate(domain, &place));
   PetscCall(TestShakenBall(domain, 5, .03, &place));
   PetscCall(TestPlace(domain, &place));
