@@ -31,7 +31,7 @@ static PetscErrorCode CaseCreate(EqmSoup soup, EqmCascadeTarget target, Case *te
   if (target == EQM_TARGET_SPHERE) PetscCall(EqmDomainCreateSphere(test->mesh.mesh, &test->domain));
   PetscCall(PetscMalloc1(test->mesh.mesh->num_local, &corner));
   for (PetscInt v = 0; v < test->mesh.mesh->num_local; v++)
-    corner[v] = (PetscBool)(test->EqmDomainMotion(domain, v) == &EqmMotionCorner);
+    corner[v] = (PetscBool)(EqmDomainMotion(test->domain, v) == &EqmMotionCorner);
   PetscCall(EqmHierarchyOptionsDefault(&options));
   PetscCall(EqmCascadeOptionsDefault(&cascade));
   options.corner = corner;
