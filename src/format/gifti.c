@@ -1,5 +1,7 @@
-/* GIFTI surfaces of the neurosciences: a point set and triangles, ASCII, base64 or compressed base64. */
+/* GIFTI surfaces of the neurosciences: a point set and triangles, ASCII, base64, compressed base64, or in binary files
+   beside. */
 #define _GNU_SOURCE
+#include "beside.h"
 #include "builder.h"
 #include "encoding.h"
 #include "metadata.h"
@@ -56,6 +58,27 @@ static PetscErrorCode ParseArray(EqmInput *in, xmlNodePtr node, Array *array)
   return 0;
 }
 
+/* The bytes of an array that lies in a file beside, at an offset; freed by the caller. */
+static PetscErrorCode TakeExternal(const Array *array, size_t num_bytes, char **bytes)
+{
+  const EqmInput *const in = array->in;
+  char name[256];
+  PetscInt64 offset = 0;
+  const char *content;
+  size_t length;
+
+  EqmXmlAttribute(array->node, "ExternalFileName", name, sizeof(name));
+  (void)EqmXmlInteger(array->node, "ExternalFileOffset", &offset);
+  if (!EqmBesideFind(in->beside, in->beside_end, name, &content, &length))
+    return EqmXmlReject(array->in, array->node, "the file \"%s\" that holds its data is not beside it", name);
+  if (offset < 0 || (size_t)offset > length || num_bytes > length - (size_t)offset)
+    return EqmXmlReject(array->in, array->node, "the file \"%s\" is too short for its data", name);
+  *bytes = malloc(num_bytes + 1);
+  if (!*bytes) return PETSC_ERR_MEM;
+  memcpy(*bytes, content + offset, num_bytes);
+  return 0;
+}
+
 /* The bytes of base64 text, unpacked where they are compressed; freed by the caller, also after a failure. */
 static PetscErrorCode DecodeBytes(const Array *array, const EqmXmlText *text, size_t num_bytes, char **bytes)
 {
@@ -107,6 +130,12 @@ static PetscErrorCode ReadNumbers(const Array *array, PetscReal *reals, PetscInt
   char *bytes = NULL;
   PetscErrorCode code;
 
+  if (!strcmp(array->encoding, "ExternalFileBinary")) {
+    code = TakeExternal(array, num_bytes, &bytes);
+    if (!code) code = ConvertBytes(array, bytes, reals, integers);
+    free(bytes);
+    return code;
+  }
   if (!data) return EqmXmlReject(array->in, array->node, "it has no Data");
   EqmXmlGetText(data, &text);
   if (!strcmp(array->encoding, "ASCII")) {
@@ -129,7 +158,8 @@ static inline size_t IndexOf(const Array *array, PetscInt64 i, PetscInt64 k)
 /* However well they are packed, can the file hold the numbers? To be checked before memory is allocated for them. */
 static PetscErrorCode CheckRoom(const Array *array)
 {
-  const size_t file_bytes = (size_t)(array->in->end - array->in->start);
+  const EqmInput *const in = array->in;
+  const size_t file_bytes = (size_t)(in->end - in->start) + (size_t)(in->beside_end - in->beside);
 
   if (EqmInflatePlausible(file_bytes, 3 * (size_t)array->num_rows)) return 0;
   return EqmXmlReject(array->in, array->node,
@@ -250,6 +280,7 @@ static PetscErrorCode ParseGifti(const char *bytes, size_t length, EqmSerialMesh
   PetscErrorCode code;
 
   EqmInputOpen(&in, bytes, length, error, error_length);
+  in.end = EqmBesideSplit(bytes, length, &in.beside, &in.beside_end);
   EqmBuilderOpen(&builder, &in);
   code = EqmBuilderFinish(&builder, ParseMesh(&in, &builder, &metadata), mesh);
   if (code)
@@ -259,5 +290,15 @@ static PetscErrorCode ParseGifti(const char *bytes, size_t length, EqmSerialMesh
   return code;
 }
 
-EQM_DEFINE_FORMAT(Gifti) = {
-    .name = "GIFTI", .suffixes = "gii", .recognise = RecogniseGifti, .parse = ParseGifti, .write = EqmWriteGifti};
+/* Add the files beside that arrays name. See EqmLoader. */
+static PetscErrorCode LoadGifti(const char *file, char **bytes, size_t *length, char *error, size_t error_length)
+{
+  return EqmBesideLoad(file, "ExternalFileName=\"", bytes, length, error, error_length);
+}
+
+EQM_DEFINE_FORMAT(Gifti) = {.name = "GIFTI",
+                            .suffixes = "gii",
+                            .recognise = RecogniseGifti,
+                            .parse = ParseGifti,
+                            .write = EqmWriteGifti,
+                            .load = LoadGifti};

@@ -10,6 +10,7 @@ void EqmInputOpen(EqmInput *in, const char *bytes, size_t length, char *error, s
 {
   in->start = in->cursor = bytes;
   in->end = bytes + length;
+  in->beside = in->beside_end = NULL;
   in->binary = PETSC_FALSE;
   in->error = error;
   in->error_length = error_length;

@@ -10,8 +10,9 @@
 
 typedef struct {
   const char *start, *cursor, *end;
-  PetscBool binary; /* positions in messages are bytes, not lines */
-  char *error;      /* where EqmReject writes */
+  const char *beside, *beside_end; /* contents of other files that the file names, or NULL */
+  PetscBool binary;                /* positions in messages are bytes, not lines */
+  char *error;                     /* where EqmReject writes */
   size_t error_length;
 } EqmInput;
 

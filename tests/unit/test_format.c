@@ -341,6 +341,46 @@ static void TestEntities(char *message)
   CHECK(code == EQM_ERR_MESH && strstr(message, "no triangles"), "typed.gii: code %d, %s", (int)code, message);
 }
 
+/* GIFTI's arrays in a binary file beside; one that is missing, too short or in another folder is refused. */
+static void TestExternal(char *message)
+{
+  static const char text[] =
+      "<GIFTI Version=\"1.0\"><DataArray Intent=\"NIFTI_INTENT_POINTSET\" DataType=\"NIFTI_TYPE_FLOAT32\" Dim0=\"5\" "
+      "Dim1=\"3\" Encoding=\"ExternalFileBinary\" Endian=\"LittleEndian\" ExternalFileName=\"%s\" "
+      "ExternalFileOffset=\"3\"/><DataArray Intent=\"NIFTI_INTENT_TRIANGLE\" DataType=\"NIFTI_TYPE_INT32\" Dim0=\"4\" "
+      "Dim1=\"3\" Encoding=\"ExternalFileBinary\" Endian=\"LittleEndian\" ExternalFileName=\"%s\" "
+      "ExternalFileOffset=\"%d\"/></GIFTI>";
+  static const struct {
+    const char *name;
+    int offset;
+    const char *says;
+  } wrong[] = {{"none.dat", 63, "none.dat"}, {"data.dat", 64, "too short"}, {"../data.dat", 63, "beside"}};
+  char bytes[2048], data[111] = "abc";
+  EqmSoup soup = NULL;
+  PetscErrorCode code;
+
+  for (int i = 0; i < 15; ++i) {
+    const float single = (float)sample_vertices[i];
+
+    memcpy(data + 3 + 4 * i, &single, 4);
+  }
+  for (int i = 0; i < 12; ++i) memcpy(data + 63 + 4 * i, &sample_triangles[i], 4);
+  WriteBytes(PathOf("data.dat"), data, sizeof(data));
+  snprintf(bytes, sizeof(bytes), text, "data.dat", "data.dat", 63);
+  WriteBytes(PathOf("external.gii"), bytes, strlen(bytes));
+  code = EqmSoupRead(PETSC_COMM_WORLD, PathOf("external.gii"), &soup);
+  CHECK(!code, "external.gii: %s", message);
+  CHECK(code || SoupIs(soup, 5, sample_vertices, 3, 4, sample_triangles), "external.gii: another mesh");
+  EqmSoupDestroy(&soup);
+  for (int i = 0; i < 3; ++i) {
+    snprintf(bytes, sizeof(bytes), text, "data.dat", wrong[i].name, wrong[i].offset);
+    WriteBytes(PathOf("external.gii"), bytes, strlen(bytes));
+    message[0] = '\0';
+    code = EqmSoupRead(PETSC_COMM_WORLD, PathOf("external.gii"), &soup);
+    CHECK(code == EQM_ERR_IO && strstr(message, wrong[i].says), "%s: code %d: %s", wrong[i].name, (int)code, message);
+  }
+}
+
 /* Not a number is for the diagnosis to report, not for the reader. */
 static void TestNotFinite(const char *message)
 {
@@ -517,6 +557,7 @@ int main(int argc, char **argv)
   TestFields();
   TestBadFiles(message);
   TestEntities(message);
+  TestExternal(message);
   TestNotFinite(message);
   TestNumbers();
   TestChecksum();
