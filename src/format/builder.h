@@ -47,6 +47,9 @@ PETSC_INTERN PetscErrorCode EqmBuilderAddFace(EqmBuilder *builder, const char *p
 PETSC_INTERN PetscErrorCode EqmBuilderAddStrip(EqmBuilder *builder, const char *position, PetscInt64 num_vertices,
                                                PetscInt64 num_corners, const PetscInt64 *corners);
 PETSC_INTERN void EqmBuilderNoteOther(EqmBuilder *builder, PetscInt dimension, const char *position, const char *what);
+PETSC_INTERN PetscErrorCode EqmBuilderGrow(EqmInput *in, size_t row_bytes, size_t count, size_t more, size_t *capacity,
+                                           void *array);
+PETSC_INTERN PetscErrorCode EqmBuilderCutPolygons(EqmBuilder *builder);
 PETSC_INTERN PetscErrorCode EqmBuilderFinish(EqmBuilder *builder, PetscErrorCode code, EqmSerialMesh *mesh);
 
 #endif
