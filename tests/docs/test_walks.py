@@ -26,7 +26,7 @@ def commands(page):
     """Lines of code blocks, and code in sentences, that are whole commands."""
     with open(os.path.join(TOP, "docs", page), encoding="utf-8") as stream:
         text = stream.read()
-    lines = re.findall(r"^    ((?:equimap|wb_command) .*)$", text, re.M) + re.findall(r"`(equimap \w+ [^`]+ -o [^`]+)`", text)
+    lines = re.findall(r"^    ((?:equimap|wb_command) .*)$", text, re.M) + re.findall(r"`(equimap \w+ [^`]+ -o [^`]+|equimap convert [^`]+)`", text)
     return [line.split("  #")[0].strip() for line in lines]
 
 
