@@ -2,6 +2,7 @@
 #include "app.h"
 #include "base/atomicfile.h"
 #include "intake/intake.h"
+#include "mesh/handles.h"
 #include "mesh/target.h"
 #include "check_prepare.h"
 
@@ -260,6 +261,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
     report.repaired = PETSC_TRUE;
   }
   PetscCall(EqmSoupDiagnose(soup, &report.diagnosis));
+  PetscCall(EqmDiagnosisPlaceHandle(soup, &report.diagnosis));
   PetscCall(PrintCounts(&report));
   if (soup->note[0]) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  note              %s\n", soup->note));
   if (report.repaired) PetscCall(EqmPrintRepair(PETSC_COMM_WORLD, NULL, &report.repair));

@@ -1,5 +1,6 @@
 /* The mesh that a run is given: read, prepared and repaired if asked, refused if it cannot be mapped. */
 #include "intake/intake.h"
+#include "mesh/handles.h"
 #include "mesh/target.h"
 #include "store/keptmesh.h"
 #include "store/map_private.h"
@@ -74,13 +75,15 @@ static PetscErrorCode Unprepare(EqmIntake *intake)
 }
 
 /* Look at what would be mapped: its topology, the target that was asked for or that it asks for, what is wrong. */
-static PetscErrorCode Diagnose(const char *wanted, EqmIntake *intake, PetscBool *fatal, char *text, size_t length)
+static PetscErrorCode Diagnose(const char *wanted, PetscBool with_places, EqmIntake *intake, PetscBool *fatal,
+                               char *text, size_t length)
 {
   const EqmTarget *natural;
   EqmDiagnosis diagnosis;
 
   PetscFunctionBegin;
   PetscCall(EqmSoupDiagnose(intake->mapped, &diagnosis));
+  if (with_places) PetscCall(EqmDiagnosisPlaceHandle(intake->mapped, &diagnosis));
   intake->topology = diagnosis.topology;
   natural = EqmTargetOfTopology(diagnosis.topology);
   intake->target = wanted || !natural ? wanted : natural->name;
@@ -108,7 +111,7 @@ static PetscErrorCode FindCure(EqmIntake *intake, const char *wanted, PetscBool 
     PetscCall(PetscStrncpy(options.steps, cure ? "auto" : "none", sizeof(options.steps)));
     PetscCall(Unprepare(intake));
     PetscCall(Prepare(&options, intake));
-    if (intake->mapped != intake->given) PetscCall(Diagnose(wanted, intake, &fatal, text, sizeof(text)));
+    if (intake->mapped != intake->given) PetscCall(Diagnose(wanted, PETSC_FALSE, intake, &fatal, text, sizeof(text)));
     PetscCall(PetscStrncpy(advice, cures[cure], length));
   }
   if (fatal) advice[0] = '\0';
@@ -190,7 +193,13 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   PetscCall(Prepare(&prepare, intake));
   if (!options->quiet) PetscCall(EqmPrintPreparation(comm, options->part, &intake->preparation));
   if (options->repair && !options->quiet) PetscCall(EqmPrintRepair(comm, options->part, &intake->repair));
-  PetscCall(Diagnose(options->target, intake, &fatal, text, sizeof(text)));
+  if (intake->repair.cells_split && !options->quiet) {
+    PetscCall(PetscPrintf(comm,
+                          "%s%snote: the map is made for the parts of the %" PetscInt64_FMT
+                          " cells that were split; they themselves, measured afterwards, may be worse\n",
+                          OF_PART(options->part), intake->repair.cells_split));
+  }
+  PetscCall(Diagnose(options->target, PETSC_TRUE, intake, &fatal, text, sizeof(text)));
   if (fatal) PetscCall(Refuse(intake, options, text));
   if (!options->quiet) PetscCall(PrintLinesWith(comm, options->part, "warning: ", text));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));

@@ -1,6 +1,5 @@
 /* What is this mesh, and what is wrong with it? */
 #include "mesh/diagnose.h"
-#include "mesh/handles.h"
 
 /* Sums over all vertices' links. */
 typedef struct {
@@ -217,28 +216,6 @@ static void Conclude(const EqmSoup soup, const Counts *counts, EqmDiagnosis *dia
   }
 }
 
-/* One short loop around a handle, four vertices of it in each entry of `where`. */
-static PetscErrorCode PlaceHandle(EqmSoup soup, EqmDiagnosis *diagnosis)
-{
-  EqmFinding *const finding = &diagnosis->finding[EQM_FINDING_GENUS];
-  EqmSerialMesh mesh;
-  PetscInt length = 0, *loop = NULL;
-  PetscMPIInt rank;
-
-  PetscFunctionBegin;
-  if (soup->cell_size != 3 || diagnosis->genus <= 0 || soup->num_cells > EQM_MOST_CELLS_FOR_HANDLES)
-    PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
-  PetscCall(EqmSoupGather(soup, &mesh));
-  if (rank == 0) PetscCall(EqmHandleFind(&mesh, &length, &loop));
-  PetscCall(EqmSerialMeshReset(&mesh));
-  for (PetscInt k = 0; k < 4 * EQM_FINDING_SHOWN; k++) finding->where[k / 4][k % 4] = k < length ? loop[k] : -1;
-  finding->shown = PetscMin((length + 3) / 4, EQM_FINDING_SHOWN);
-  PetscCall(PetscFree(loop));
-  PetscCallMPI(MPI_Bcast(finding, (PetscMPIInt)sizeof(*finding), MPI_BYTE, 0, soup->comm));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode EqmSoupDiagnose(EqmSoup soup, EqmDiagnosis *diagnosis)
 {
   EqmVicinity vicinity;
@@ -253,6 +230,5 @@ PetscErrorCode EqmSoupDiagnose(EqmSoup soup, EqmDiagnosis *diagnosis)
   PetscCall(EqmVicinityReset(&vicinity));
   PetscCall(EqmFindingsMerge(soup->comm, EQM_NUM_FINDINGS, diagnosis->finding));
   Conclude(soup, &counts, diagnosis);
-  PetscCall(PlaceHandle(soup, diagnosis));
   PetscFunctionReturn(0);
 }

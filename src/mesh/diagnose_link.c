@@ -1,5 +1,6 @@
 /* The link of a vertex: is its star one fan, one full turn, one ball? */
 #include "mesh/diagnose.h"
+#include "base/sets.h"
 
 /* Room for the links of all owned vertices of a vicinity. Free with EqmLinkReset. Not collective. */
 PetscErrorCode EqmLinkCreate(const EqmVicinity *vicinity, EqmLink *link)
@@ -31,25 +32,6 @@ PetscErrorCode EqmLinkReset(EqmLink *link)
       PetscFree6(link->edge, link->edge_count, link->corner_root, link->edge_corner, link->edge_head, link->edge_next));
   PetscCall(PetscFree2(link->edge_sides, link->place));
   PetscFunctionReturn(0);
-}
-
-static PetscInt Root(PetscInt *root, PetscInt i)
-{
-  while (root[i] != i) {
-    root[i] = root[root[i]];
-    i = root[i];
-  }
-  return i;
-}
-
-/* Join two sets; 1 if they were two, else 0. */
-static PetscInt Join(PetscInt *root, PetscInt a, PetscInt b)
-{
-  a = Root(root, a);
-  b = Root(root, b);
-  if (a == b) return 0;
-  root[PetscMax(a, b)] = PetscMin(a, b);
-  return 1;
 }
 
 static PetscInt Place(EqmLink *link, PetscInt vertex)
@@ -87,7 +69,7 @@ static void LinkOfTriangles(const EqmVicinity *vicinity, PetscInt vertex, EqmLin
     link->leaving[next]++;
     NoteEdgeCell(link, previous, cell);
     link->entering[previous]++;
-    pieces -= Join(link->vertex_root, next, previous);
+    pieces -= EqmSetJoin(link->vertex_root, next, previous);
   }
   pieces += link->num_vertices;
   for (PetscInt i = 0; i < link->num_vertices; i++) {
@@ -113,8 +95,8 @@ static PetscInt EnterLinkEdge(EqmLink *link, PetscInt a, PetscInt corner_a, Pets
   if (e >= 0) {
     link->edge_count[e]++;
     link->edge_sides[e] += side;
-    return Join(link->corner_root, link->edge_corner[2 * e], corner_low) +
-           Join(link->corner_root, link->edge_corner[2 * e + 1], corner_high);
+    return EqmSetJoin(link->corner_root, link->edge_corner[2 * e], corner_low) +
+           EqmSetJoin(link->corner_root, link->edge_corner[2 * e + 1], corner_high);
   }
   e = link->num_edges++;
   link->edge[2 * e] = low;
@@ -148,7 +130,7 @@ static void LinkOfTetrahedra(const EqmVicinity *vicinity, PetscInt vertex, EqmLi
       const PetscInt l = (k + 1) % 3;
 
       fans -= EnterLinkEdge(link, place[k], 3 * t + k, place[l], 3 * t + l, turn);
-      pieces -= Join(link->vertex_root, place[k], place[l]);
+      pieces -= EqmSetJoin(link->vertex_root, place[k], place[l]);
     }
   }
   pieces += link->num_vertices;

@@ -1,4 +1,5 @@
 #include "mesh/handles.h"
+#include "base/sets.h"
 #include <string.h>
 
 enum { NUM_ROOTS = 4 };
@@ -129,21 +130,6 @@ static PetscErrorCode GrowTree(Graph *graph, PetscInt root)
   PetscFunctionReturn(0);
 }
 
-static PetscInt Root(PetscInt *set, PetscInt i)
-{
-  while (set[i] != i) i = set[i] = set[set[i]];
-  return i;
-}
-
-static PetscBool Join(PetscInt *set, PetscInt a, PetscInt b)
-{
-  a = Root(set, a);
-  b = Root(set, b);
-  if (a == b) return PETSC_FALSE;
-  set[PetscMax(a, b)] = PetscMin(a, b);
-  return PETSC_TRUE;
-}
-
 /* The edges that neither tree nor cotree has, two per handle. The cotree takes edges far from the root first: so the
    loops of those that are left are short. Boundary loops count as cells. */
 static PetscErrorCode FindGenerators(Graph *graph, PetscInt *count, PetscInt **generator)
@@ -157,7 +143,7 @@ static PetscErrorCode FindGenerators(Graph *graph, PetscInt *count, PetscInt **g
   for (PetscInt e = 0; e < graph->num_edges; e++) {
     const Edge *const edge = &graph->edge[e];
 
-    if (edge->cell[1] < 0) (void)Join(graph->set, num_cells + edge->low, num_cells + edge->high);
+    if (edge->cell[1] < 0) (void)EqmSetJoin(graph->set, num_cells + edge->low, num_cells + edge->high);
     if (graph->depth[edge->low] < 0 || graph->parent[edge->low] == e || graph->parent[edge->high] == e) continue;
     key[num] = -(graph->depth[edge->low] + graph->depth[edge->high]);
     order[num++] = e;
@@ -168,7 +154,7 @@ static PetscErrorCode FindGenerators(Graph *graph, PetscInt *count, PetscInt **g
     const Edge *const edge = &graph->edge[order[k]];
     const PetscInt other = edge->cell[1] < 0 ? num_cells + edge->low : edge->cell[1];
 
-    if (!Join(graph->set, edge->cell[0], other)) order[(*count)++] = order[k];
+    if (!EqmSetJoin(graph->set, edge->cell[0], other)) order[(*count)++] = order[k];
   }
   PetscCall(PetscMalloc1(*count, generator));
   PetscCall(PetscArraycpy(*generator, order, *count));
@@ -251,5 +237,26 @@ PetscErrorCode EqmHandleFind(const EqmSerialMesh *mesh, PetscInt *length, PetscI
         TryRoot(&graph, k ? (*loop)[(k - 1) * *length / (NUM_ROOTS - 1)] : graph.edge[0].low, &best, length, loop));
   }
   PetscCall(GraphReset(&graph));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmDiagnosisPlaceHandle(EqmSoup soup, EqmDiagnosis *diagnosis)
+{
+  EqmFinding *const finding = &diagnosis->finding[EQM_FINDING_GENUS];
+  EqmSerialMesh mesh;
+  PetscInt length = 0, *loop = NULL;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  if (soup->cell_size != 3 || diagnosis->genus <= 0 || soup->num_cells > EQM_MOST_CELLS_FOR_HANDLES)
+    PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
+  PetscCall(EqmSoupGather(soup, &mesh));
+  if (rank == 0) PetscCall(EqmHandleFind(&mesh, &length, &loop));
+  PetscCall(EqmSerialMeshReset(&mesh));
+  for (PetscInt k = 0; k < 4 * EQM_FINDING_SHOWN; k++) finding->where[k / 4][k % 4] = k < length ? loop[k] : -1;
+  finding->shown = PetscMin((length + 3) / 4, EQM_FINDING_SHOWN);
+  PetscCall(PetscFree(loop));
+  PetscCallMPI(MPI_Bcast(finding, (PetscMPIInt)sizeof(*finding), MPI_BYTE, 0, soup->comm));
   PetscFunctionReturn(0);
 }

@@ -14,4 +14,10 @@ enum { EQM_MOST_CELLS_FOR_HANDLES = 4000000 };
    `length` vertices in order, PetscMalloc'ed; length is 0 where there is no handle or the surface is not a manifold. */
 PETSC_INTERN PetscErrorCode EqmHandleFind(const EqmSerialMesh *mesh, PetscInt *length, PetscInt **loop);
 
+/* EqmDiagnosisPlaceHandle - add to the diagnosis of a surface with handles where one is: in `where` of the finding
+   EQM_FINDING_GENUS a short loop, four vertices an entry, as far as there is room.
+
+   Collective. Nothing is added for a surface of more than EQM_MOST_CELLS_FOR_HANDLES cells. */
+PETSC_INTERN PetscErrorCode EqmDiagnosisPlaceHandle(EqmSoup soup, EqmDiagnosis *diagnosis);
+
 #endif

@@ -11,14 +11,6 @@ typedef struct {
   PetscInt *place; /* in the loop, per vertex; -1 elsewhere */
 } Surgery;
 
-static int ComparePairs(const void *a, const void *b)
-{
-  const PetscInt *const s = a, *const t = b;
-
-  if (s[0] != t[0]) return s[0] < t[0] ? -1 : 1;
-  return (s[1] > t[1]) - (s[1] < t[1]);
-}
-
 /* The diameter of the bounding box of the vertices in use. */
 static PetscReal Diameter(const EqmSerialMesh *mesh)
 {
@@ -121,7 +113,7 @@ static PetscErrorCode FindChords(const Surgery *s, PetscInt n, PetscInt *num_cho
       count++;
     }
   }
-  qsort(*chord, (size_t)count, sizeof(**chord), ComparePairs);
+  qsort(*chord, (size_t)count, sizeof(**chord), EqmComparePairs);
   *num_chords = count;
   PetscFunctionReturn(0);
 }
@@ -176,7 +168,7 @@ static PetscErrorCode CutAndFill(Surgery *s, PetscInt n, const PetscInt *loop, P
     chord[k][0] = n - 1 - chord[k][1];
     chord[k][1] = n - 1 - low;
   }
-  qsort(chord, (size_t)num_chords, sizeof(*chord), ComparePairs);
+  qsort(chord, (size_t)num_chords, sizeof(*chord), EqmComparePairs);
   PetscCall(AddPatch(s, n, ring, num_chords, (const PetscInt(*)[2])chord));
   PetscCall(PetscFree(ring));
   PetscCall(PetscFree(chord));

@@ -19,14 +19,6 @@ static int CompareTails(const void *a, const void *b)
   return (s->tail > t->tail) - (s->tail < t->tail);
 }
 
-static int ComparePairs(const void *a, const void *b)
-{
-  const PetscInt *const s = a, *const t = b;
-
-  if (s[0] != t[0]) return s[0] < t[0] ? -1 : 1;
-  return (s[1] > t[1]) - (s[1] < t[1]);
-}
-
 /* Gather the boundary edges, with the surface on their left, and the chords. */
 static PetscErrorCode GatherBoundary(const EqmVicinity *vicinity, Boundary *boundary)
 {
@@ -211,7 +203,7 @@ static PetscErrorCode ChordsOfLoop(const Boundary *boundary, PetscInt n, const P
     chord[*num_chords][0] = PetscMin(place[ends[0]], place[ends[1]]);
     chord[(*num_chords)++][1] = PetscMax(place[ends[0]], place[ends[1]]);
   }
-  qsort(chord, (size_t)*num_chords, sizeof(*chord), ComparePairs);
+  qsort(chord, (size_t)*num_chords, sizeof(*chord), EqmComparePairs);
   for (PetscInt k = 0; k < n; k++) place[boundary->same[loop[k]]] = -1;
   PetscFunctionReturn(0);
 }

@@ -6,6 +6,14 @@
 /* Longer loops lose ears first, until the triangulation of least area, which takes n^3 steps, is affordable. */
 enum { MOST_VERTICES = 500 };
 
+int EqmComparePairs(const void *a, const void *b)
+{
+  const PetscInt *const s = a, *const t = b;
+
+  if (s[0] != t[0]) return s[0] < t[0] ? -1 : 1;
+  return (s[1] > t[1]) - (s[1] < t[1]);
+}
+
 /* Do two places of the loop join vertices that an edge of the mesh joins already? */
 PetscBool EqmPatchIsForbidden(PetscInt a, PetscInt b, PetscInt num_forbidden, const PetscInt (*forbidden)[2])
 {

@@ -1,6 +1,7 @@
 /* Remove duplicate cells, cut a surface apart where it is not a manifold, turn what disagrees with its neighbours. */
 #include "prepare/step.h"
 #include "base/exchange.h"
+#include "base/sets.h"
 
 /* What is done to the cells: per corner of a cell the copy of its vertex that it gets, -1: the vertex itself. */
 typedef struct {
@@ -9,12 +10,6 @@ typedef struct {
   PetscInt capacity;
   PetscInt64 cut; /* vertices of which there are copies */
 } Cut;
-
-static PetscInt Root(PetscInt *parent, PetscInt i)
-{
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
 
 /* The fans of an owned vertex: triangles of its star that hang together through edges of two triangles (Gueziec et al.
    2001). `fan` is per triangle of the star the first one of its fan. */
@@ -28,14 +23,10 @@ static void FindFans(const EqmVicinity *vicinity, PetscInt v, const EqmLink *lin
   }
   for (PetscInt i = 0; i < link->num_vertices; i++) {
     const PetscInt *const cell = link->edge_cell + 2 * i;
-    PetscInt a, b;
 
-    if (link->leaving[i] + link->entering[i] != 2) continue;
-    a = Root(fan, place[cell[0]]);
-    b = Root(fan, place[cell[1]]);
-    fan[PetscMax(a, b)] = PetscMin(a, b);
+    if (link->leaving[i] + link->entering[i] == 2) (void)EqmSetJoin(fan, place[cell[0]], place[cell[1]]);
   }
-  for (PetscInt k = 0; k < n; k++) fan[k] = Root(fan, k);
+  for (PetscInt k = 0; k < n; k++) fan[k] = EqmSetRoot(fan, k);
 }
 
 /* The fan that keeps the vertex: the one of most triangles, of equal ones that with the lowest. */

@@ -48,6 +48,8 @@ PETSC_INTERN PetscErrorCode EqmPatchCreate(PetscInt n, const PetscReal *loop, Pe
                                            const PetscInt (*forbidden)[2], EqmPatch *patch);
 PETSC_INTERN PetscErrorCode EqmPatchRefine(PetscInt num_forbidden, const PetscInt (*forbidden)[2], EqmPatch *patch);
 PETSC_INTERN PetscErrorCode EqmPatchReset(EqmPatch *patch);
+/* For qsort: the order of forbidden edges. */
+PETSC_INTERN int EqmComparePairs(const void *a, const void *b);
 PETSC_INTERN PetscBool EqmPatchIsForbidden(PetscInt a, PetscInt b, PetscInt num_forbidden,
                                            const PetscInt (*forbidden)[2]);
 

@@ -2,6 +2,7 @@
 #include "prepare/step.h"
 #include "base/exchange.h"
 #include "base/rows.h"
+#include "base/sets.h"
 
 /* A boundary vertex on rank 0, which gets all of them: few beside those of the mesh. */
 typedef struct {
@@ -19,42 +20,37 @@ static int ComparePlaces(const void *a, const void *b)
   return (s->number > t->number) - (s->number < t->number);
 }
 
-static PetscInt Root(Point *point, PetscInt i)
-{
-  while (point[i].label != i) i = point[i].label = point[point[i].label].label;
-  return i;
-}
-
 /* Label every point by the lowest number among those that hang together by steps of at most `distance`. Not collective.
  */
 static PetscErrorCode JoinPoints(PetscInt n, Point *point, PetscReal distance, PetscInt *num_joined)
 {
-  PetscInt *lowest;
+  PetscInt *set, *lowest;
 
   PetscFunctionBegin;
   qsort(point, (size_t)n, sizeof(Point), ComparePlaces);
-  PetscCall(PetscMalloc1(n, &lowest));
-  for (PetscInt i = 0; i < n; i++) point[i].label = i;
+  PetscCall(PetscMalloc2(n, &set, n, &lowest));
   for (PetscInt i = 0; i < n; i++) {
-    for (PetscInt j = i + 1; j < n && point[j].x[0] - point[i].x[0] <= distance; j++) {
-      const PetscReal y = point[j].x[1] - point[i].x[1], z = point[j].x[2] - point[i].x[2];
-      const PetscReal x = point[j].x[0] - point[i].x[0];
-
-      if (x * x + y * y + z * z <= distance * distance) point[Root(point, j)].label = Root(point, i);
-    }
+    set[i] = i;
     lowest[i] = PETSC_MAX_INT;
   }
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt root = Root(point, i);
+    for (PetscInt j = i + 1; j < n && point[j].x[0] - point[i].x[0] <= distance; j++) {
+      const PetscReal x = point[j].x[0] - point[i].x[0], y = point[j].x[1] - point[i].x[1];
+      const PetscReal z = point[j].x[2] - point[i].x[2];
+
+      if (x * x + y * y + z * z <= distance * distance) (void)EqmSetJoin(set, i, j);
+    }
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt root = EqmSetRoot(set, i);
     lowest[root] = PetscMin(lowest[root], point[i].number);
   }
-  for (PetscInt i = 0; i < n; i++) point[i].label = Root(point, i);
   *num_joined = 0;
   for (PetscInt i = 0; i < n; i++) {
-    point[i].label = lowest[point[i].label];
+    point[i].label = lowest[EqmSetRoot(set, i)];
     *num_joined += point[i].label != point[i].number;
   }
-  PetscCall(PetscFree(lowest));
+  PetscCall(PetscFree2(set, lowest));
   PetscFunctionReturn(0);
 }
 
