@@ -20,7 +20,7 @@ void EqmResultCurve(const EqmResult *result, double *values, const char **name)
   for (PetscInt k = 0; k < result->num_history; k++) {
     values[k] = energy[k];
     smallest = PetscMin(smallest, energy[k]);
-    least_gradient = PetscMin(least_gradient, result->gradient[k]);
+    least_gradient = PetscMin(least_gradient, result->gradient ? result->gradient[k] : -1.);
   }
   if (!EqmResultIsConformal(result)) return;
   *name = least_gradient > 0. ? "norm of the gradient" : "Dirichlet energy above its smallest";

@@ -135,16 +135,20 @@ static PetscErrorCode AddSolid(const EqmResult *result, EqmCamera camera, Row *r
    the target, which tells what corresponds, and with the ratio or the distance. */
 static PetscErrorCode AddRegistered(const EqmResult *result, EqmCamera camera, Row *row)
 {
-  EqmCamera of_b = camera;
+  EqmCamera of_b = result->dim == 2 ? EqmCameraFlat() : camera; /* the disk itself may stand for B */
+  const char *const pattern = result->dim == 2 ? "The pattern on the target" : "The pattern carried to B";
+  const char *const image = result->distance   ? "On B: the distance from A"
+                            : result->dim == 2 ? "A on the target, coloured by ratio"
+                                               : "A on B, coloured by ratio";
 
   PetscFunctionBegin;
   EqmCameraFit(&of_b, &row->surface, result->images);
   PetscCall(AddView(result, "A, coloured by ratio", &row->surface, result->vertices, camera, EQM_PAINT_CELLS, row));
   row->view[row->count - 1].marked = PETSC_TRUE;
   PetscCall(AddView(result, "A, with a pattern", &row->surface, result->vertices, camera, EQM_PAINT_PATTERN, row));
-  PetscCall(AddView(result, "The pattern carried to B", &row->surface, result->images, of_b, EQM_PAINT_PATTERN, row));
-  PetscCall(AddView(result, result->distance ? "On B: the distance from A" : "A on B, coloured by ratio", &row->surface,
-                    result->images, of_b, result->distance ? EQM_PAINT_DISTANCE : EQM_PAINT_CELLS, row));
+  PetscCall(AddView(result, pattern, &row->surface, result->images, of_b, EQM_PAINT_PATTERN, row));
+  PetscCall(AddView(result, image, &row->surface, result->images, of_b,
+                    result->distance ? EQM_PAINT_DISTANCE : EQM_PAINT_CELLS, row));
   row->view[1].landmarks = row->view[2].landmarks = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

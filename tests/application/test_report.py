@@ -63,6 +63,22 @@ def check_figures(run):
         assert abs(float(deviation) / file.attrs["ratio_weighted_sd"] - 1) < 1e-3, (deviation, file.attrs["ratio_weighted_sd"])
 
 
+def check_old(run):
+    """A file of the first layout: texts of fixed length, no weighted figures, fewer arrays."""
+    shutil.copy("hills.h5", "old.h5")
+    with h5py.File("old.h5", "r+") as file:
+        for name, value in list(file.attrs.items()):
+            if isinstance(value, str):
+                del file.attrs[name]
+                file.attrs.create(name, numpy.bytes_(value.encode()))
+            elif name == "format_version" or "weighted" in name or "outlier" in name:
+                del file.attrs[name]
+        for path in ("/history/gradient_norm", "/cell/quasi_conformal", "/histogram"):
+            del file[path]
+    run("report", "old.h5", "-o", "old.html", "-width", "400")
+    assert rows_of("old.html")["SD of r, by area"] == rows_of("both.html")["SD of r, by area"][:1]
+
+
 def check_kinds(run):
     """Angles, solids and correspondences have pages of their own kind; the camera goes where it is told."""
     run("generate", "sphere", "-n", "200", "-o", "sphere.obj")
@@ -129,6 +145,7 @@ def main(equimap, ranks):
     run("report", "cut.h5", "-o", "new.png", expected=(6,))
     assert not [name for name in os.listdir() if name.startswith("new") or "tmp" in name or "docx" in name]
     check_figures(run)
+    check_old(run)
     check_kinds(run)
     print("report: png, svg, pdf and html drawn; figures are those of the results; wrong calls refused")
 
