@@ -1,6 +1,7 @@
 /* From the coarsest level to the finest. */
 #include "hierarchy/balance.h"
 #include "hierarchy/reinsert.h"
+#include "base/quiet.h"
 
 PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options)
 {
@@ -151,8 +152,14 @@ static PetscErrorCode CascadeLevels(EqmHierarchy hierarchy, EqmCascadeTarget tar
 PetscErrorCode EqmCascade(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
                           PetscReal *x, EqmCascadeResult *result)
 {
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode code = 0;
+
   PetscFunctionBegin;
-  if (hierarchy->rank == 0) PetscCall(CascadeLevels(hierarchy, target, options, x, result));
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message)); /* the other ranks wait for this one */
+  if (hierarchy->rank == 0) code = CascadeLevels(hierarchy, target, options, x, result);
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(EqmAgree(hierarchy->comm, code, message));
   PetscCallMPI(MPI_Bcast(&result->folds, 1, MPIU_INT, 0, hierarchy->comm));
   PetscCallMPI(MPI_Bcast(&result->energy, 1, MPIU_REAL, 0, hierarchy->comm));
   PetscFunctionReturn(0);

@@ -1,6 +1,7 @@
 /* The hierarchy as a whole. */
 #include "hierarchy/level.h"
 #include "hierarchy/gather.h"
+#include "base/quiet.h"
 #include "base/rows.h"
 
 PetscErrorCode EqmHierarchyOptionsDefault(EqmHierarchyOptions *options)
@@ -37,6 +38,8 @@ static PetscErrorCode MakeLevels(EqmHierarchy hierarchy, const EqmHierarchyOptio
 
 PetscErrorCode EqmHierarchyCreate(EqmMesh mesh, const EqmHierarchyOptions *options, EqmHierarchy *out)
 {
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode code = 0;
   EqmHierarchy hierarchy;
 
   PetscFunctionBegin;
@@ -46,7 +49,10 @@ PetscErrorCode EqmHierarchyCreate(EqmMesh mesh, const EqmHierarchyOptions *optio
   hierarchy->rank = mesh->rank;
   hierarchy->num_owned = mesh->num_owned;
   PetscCall(EqmGatherFinest(mesh, options->corner, hierarchy));
-  if (mesh->rank == 0) PetscCall(MakeLevels(hierarchy, options));
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message)); /* the other ranks wait for this one */
+  if (mesh->rank == 0) code = MakeLevels(hierarchy, options);
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(EqmAgree(mesh->comm, code, message));
   *out = hierarchy;
   PetscFunctionReturn(0);
 }

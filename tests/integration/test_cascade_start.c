@@ -1,0 +1,55 @@
+/* Runs that begin with -start cascade: they converge as those from the default start do, and turn angles less. */
+#include "support/testing.h"
+
+typedef struct {
+  PetscReal start, energy, angle; /* mean error in degrees */
+} Outcome;
+
+static PetscErrorCode Run(const char *shape, PetscInt n, const char *target, const char *options, Outcome *outcome)
+{
+  const EqmDistortion *distortion;
+  TestMesh test;
+  EqmSolver solver;
+  EqmMap map;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, n, 1, &test));
+  PetscCall(TestSolve(test.mesh, target, options, &solver));
+  PetscCall(EqmSolverGetMap(solver, test.soup, &map));
+  PetscCall(EqmMapGetDistortion(map, &distortion));
+  PetscCall(EqmMapGetEnergies(map, &outcome->start, &outcome->energy));
+  CHECK(distortion->folds == 0, "%s, %s: %d folds", shape, options, (int)distortion->folds);
+  outcome->angle = distortion->angle_error.mean;
+  PetscCall(EqmMapDestroy(&map));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+/* About as far down as from the guarded start, from lower, and at the end the angles are off by `gain` degrees less. */
+static PetscErrorCode TestTarget(const char *shape, PetscInt n, const char *target, PetscReal gain)
+{
+  Outcome cascade, guarded;
+
+  PetscFunctionBegin;
+  PetscCall(Run(shape, n, target, "-start cascade -max_it 12", &cascade));
+  PetscCall(Run(shape, n, target, "-start guarded -max_it 12", &guarded));
+  CHECK(cascade.start < guarded.start, "%s, %s: starts at %g, not below %g", shape, target, (double)cascade.start,
+        (double)guarded.start);
+  CHECK(cascade.energy < 10. * guarded.energy, "%s, %s: energy %g, not %g", shape, target, (double)cascade.energy,
+        (double)guarded.energy);
+  CHECK(cascade.angle < guarded.angle - gain, "%s, %s: angles are off by %g degrees, not %g", shape, target,
+        (double)cascade.angle, (double)guarded.angle);
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(TestTarget("hills", 2000, "disk", 3.));
+  PetscCall(TestTarget("hills", 2000, "square", 3.));
+  PetscCall(TestTarget("head", 2000, "sphere", -.5));
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(0);
+}
