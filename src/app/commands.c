@@ -1,16 +1,17 @@
 /* The table of commands, and what the program says about itself. */
 #include "commands.h"
 #include "base/nearest.h"
+#include "mesh/target.h"
 #include <stdio.h>
 #include <string.h>
 
+/* The purpose of a map command is that of its target. */
 static const EqmCommandRow commands[] = {
-    {"disk", EqmCommandMap, "MESH -o OUT", "area-preserving map of a disk-type surface to the unit disk"},
-    {"square", EqmCommandMap, "MESH -o OUT", "area-preserving map of a disk-type surface to the unit square"},
-    {"sphere", EqmCommandMap, "MESH -o OUT", "area-preserving map of a closed genus-0 surface to the unit sphere"},
-    {"conformal", EqmCommandMap, "MESH -o OUT",
-     "angle-preserving map: closed surface to the unit sphere, disk-type to the unit disk"},
-    {"ball", EqmCommandMap, "MESH -o OUT", "volume-preserving map of a solid ball of tetrahedra to the unit ball"},
+    {"disk", EqmCommandMap, "MESH -o OUT", NULL},
+    {"square", EqmCommandMap, "MESH -o OUT", NULL},
+    {"sphere", EqmCommandMap, "MESH -o OUT", NULL},
+    {"conformal", EqmCommandMap, "MESH -o OUT", NULL},
+    {"ball", EqmCommandMap, "MESH -o OUT", NULL},
     {"register", EqmCommandRegister, "A B -o OUT", "measure-preserving correspondence between two surfaces or solids"},
     {"check", EqmCommandCheck, "MESH", "diagnose a mesh: what it is, what is wrong, what each command would say"},
     {"measure", EqmCommandMeasure, "MESH MAP", "distortion and folds of any map, also one made elsewhere"},
@@ -19,6 +20,11 @@ static const EqmCommandRow commands[] = {
     {"report", EqmCommandReport, "RESULT -o FILE", "pictures and plots of a result"},
 };
 enum { NUM_COMMANDS = sizeof(commands) / sizeof(commands[0]) };
+
+const char *EqmCommandPurpose(const EqmCommandRow *row)
+{
+  return row->purpose ? row->purpose : EqmTargetFind(row->name)->purpose;
+}
 
 PetscErrorCode EqmCommandFind(const char *name, const EqmCommandRow **row)
 {
@@ -41,7 +47,7 @@ static void PrintUsage(void)
          "usage: equimap COMMAND ARGUMENTS [-options]      (alone or under mpirun -n N)\n\n",
          EqmVersion());
   for (int k = 0; k < NUM_COMMANDS; k++)
-    printf("  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage, commands[k].purpose);
+    printf("  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage, EqmCommandPurpose(&commands[k]));
   printf("\nequimap COMMAND --help lists the options of a command. To begin with:\n"
          "  equimap generate hills -n 20000 -o hills.obj\n"
          "  equimap disk hills.obj -o hills.h5 && equimap report hills.h5 -o hills.png\n");
@@ -60,7 +66,7 @@ static void PrintMan(void)
          EqmVersion());
   for (int k = 0; k < NUM_COMMANDS; k++)
     printf(".TP\n.BI %s \" %s\"\n%s; see\n.BR equimap\\-%s (1)\n", commands[k].name, commands[k].usage,
-           commands[k].purpose, commands[k].name);
+           EqmCommandPurpose(&commands[k]), commands[k].name);
   printf(".TP\n.BI help \" COMMAND\"\nlist the options of a command, as \\-\\-help behind it does\n.SH EXIT STATUS\n");
   for (size_t k = 0; k < sizeof(codes) / sizeof(codes[0]); k++)
     printf(".TP\n.B %d\n%s\n", (int)codes[k], EqmStatusName(codes[k]));

@@ -105,12 +105,12 @@ static PetscErrorCode PrintHelp(const EqmCommandRow *row, const EqmCommandLine *
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "--help=%s: choose one of text, man, json, words", format);
   if (rank) PetscFunctionReturn(0);
   if (f == 0) {
-    printf("equimap %s %s\n  %s\n", row->name, row->usage, row->purpose);
+    printf("equimap %s %s\n  %s\n", row->name, row->usage, EqmCommandPurpose(row));
     EqmHelpText(line->catalogue);
   } else if (f == 1) {
-    EqmHelpMan(line->catalogue, row->name, row->usage, row->purpose);
+    EqmHelpMan(line->catalogue, row->name, row->usage, EqmCommandPurpose(row));
   } else if (f == 2) {
-    PetscCall(EqmHelpJson(line->catalogue, row->name, row->usage, row->purpose));
+    PetscCall(EqmHelpJson(line->catalogue, row->name, row->usage, EqmCommandPurpose(row)));
   } else {
     EqmHelpWords(line->catalogue, row->name);
   }

@@ -1,4 +1,5 @@
-/* Mend what is safe to mend: twins, repeated vertices, orientation, cells that hang on the boundary alone. */
+/* Repair what can be repaired without a choice: duplicates, repeated vertices, orientation, cells with all vertices on
+   the boundary. */
 #include "mesh/subdivide.h"
 
 /* What is done to a cell with all new vertices known. */
@@ -142,8 +143,8 @@ static PetscErrorCode AddBisected(const Cuts *cuts, PetscInt parent, const Petsc
 }
 
 /* Add what becomes of one cell; `middle` and `center` are numbers of new vertices or -1. */
-static PetscErrorCode AddMended(PetscInt parent, const PetscInt vertex[], const PetscInt middle[], PetscInt center,
-                                EqmCellList *list)
+static PetscErrorCode AddRepaired(PetscInt parent, const PetscInt vertex[], const PetscInt middle[], PetscInt center,
+                                  EqmCellList *list)
 {
   Cuts cuts = {.num_cuts = 0};
 
@@ -189,7 +190,8 @@ static PetscErrorCode AddCells(const EqmVicinity *vicinity, const EqmVertexGroup
 
       middle[e] = place < 0 ? -1 : first_middle + place;
     }
-    PetscCall(AddMended(vicinity->cell_input[c], vertex, middle, center[c] < 0 ? -1 : first_center + center[c], list));
+    PetscCall(
+        AddRepaired(vicinity->cell_input[c], vertex, middle, center[c] < 0 ? -1 : first_center + center[c], list));
     if (list->count > count + 1) repair->cells_split++;
     if (!turn[c]) continue;
     repair->cells_flipped++;
@@ -236,9 +238,9 @@ PetscErrorCode EqmVicinityRemoveDuplicates(EqmVicinity *vicinity, PetscInt64 *re
   PetscFunctionReturn(0);
 }
 
-/* Mend the cells of a vicinity: turn, cut, fill. Fills the groups 1 and 2 and the list. */
-static PetscErrorCode MendCells(EqmSoup soup, const EqmVicinity *vicinity, EqmVertexGroup groups[3], EqmRepair *repair,
-                                EqmCellList *list)
+/* Repair the cells of a vicinity: turn, cut, fill. Fills the groups 1 and 2 and the list. */
+static PetscErrorCode RepairCells(EqmSoup soup, const EqmVicinity *vicinity, EqmVertexGroup groups[3],
+                                  EqmRepair *repair, EqmCellList *list)
 {
   PetscInt *edge_vertex, *center;
   PetscBool *turn, *on_boundary;
@@ -271,7 +273,7 @@ PetscErrorCode EqmSoupRepair(EqmSoup *soup, EqmRepair *repair, PetscInt **parent
     repair->vertices_unreferenced += vicinity.star_start[v] == vicinity.star_start[v + 1];
   }
   PetscCall(EqmVertexGroupPlace((*soup)->comm, &groups[0]));
-  PetscCall(MendCells(*soup, &vicinity, groups, repair, &list));
+  PetscCall(RepairCells(*soup, &vicinity, groups, repair, &list));
   PetscCall(EqmVicinityReset(&vicinity));
   repair->vertices_added = groups[1].num_local + groups[2].num_local;
   PetscCallMPI(

@@ -4,7 +4,7 @@
 
 static const EqmTarget targets[] = {
     {"disk", "area-preserving map of a disk-type surface to the unit disk", {[EQM_TOPOLOGY_DISK] = "disk"}},
-    {"square", "the same to the unit square", {[EQM_TOPOLOGY_DISK] = "square"}},
+    {"square", "area-preserving map of a disk-type surface to the unit square", {[EQM_TOPOLOGY_DISK] = "square"}},
     {"sphere",
      "area-preserving map of a closed genus-0 surface to the unit sphere",
      {[EQM_TOPOLOGY_SPHERE] = "sphere"}},
