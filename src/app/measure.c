@@ -258,10 +258,11 @@ static PetscErrorCode ReadOptions(MeasureOptions *options)
   PetscFunctionBegin;
   PetscCall(PetscMemzero(options, sizeof(*options)));
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
-  PetscCall(PetscOptionsEList("-map_in",
-                              "which numbers of a mesh file are the map: its vertices, its texture coordinates (OBJ's "
-                              "vt, PLY's s and t), or auto: the texture coordinates if the vertices repeat the mesh",
-                              NULL, sources, 3, sources[0], &source, NULL));
+  PetscCall(
+      PetscOptionsEList("-map_in",
+                        "which numbers of a mesh file are the map: its vertices, its texture coordinates, or auto: the "
+                        "texture coordinates where the vertices repeat the mesh",
+                        NULL, sources, 3, sources[0], &source, NULL));
   PetscCall(PetscOptionsString("-density", "a positive weight per cell: measure mass instead of area", NULL, "",
                                options->density, sizeof(options->density), NULL));
   PetscCall(PetscOptionsString("-o",
