@@ -43,6 +43,7 @@ mount -t proc proc "$folder/root/proc"
 cp /etc/resolv.conf "$folder/root/etc/" 2>/dev/null || true
 find /etc/apt/apt.conf.d -name '*proxy*' -exec cp {} "$folder/root/etc/apt/apt.conf.d/" \;
 
+commit=$(git rev-parse --short HEAD)
 for name in setup post test; do
   echo "container: %$name"
   if [ "$name" = setup ]; then
@@ -51,7 +52,6 @@ for name in setup post test; do
     inside "$name" >"$folder/$name.log" 2>&1 || { tail -n 40 "$folder/$name.log"; exit 1; }
   fi
 done
-commit=$(git rev-parse --short HEAD)
 grep -qx "org.opencontainers.image.revision $commit" "$folder/root/labels" || { echo "container: the commit is not in the labels"; exit 1; }
 [ ! -e "$folder/root/src" ] || { echo "container: the sources were left behind"; exit 1; }
 echo "container: built, tested, commit $commit, $(wc -l <"$folder/root/usr/local/share/equimap/packages.txt") packages, $(du -sxh "$folder/root" | cut -f1)"
