@@ -21,9 +21,8 @@ static PetscErrorCode Analyse(EqmFrontal f, const cholmod_sparse *pattern, Petsc
   f->common.nmethods = 1;
   f->common.method[0].ordering = CHOLMOD_GIVEN;
   f->symbolic = CHOLMOD(analyze_p)(&copy, order, NULL, 0, &f->common);
-  PetscCheck(f->symbolic, PETSC_COMM_SELF, PETSC_ERR_MEM,
-             "CHOLMOD's analysis failed (status %d): too little memory for this mesh on one rank; use more",
-             f->common.status);
+  f->no_memory = !f->symbolic;
+  if (f->no_memory) PetscFunctionReturn(0);
   f->num_unknowns = (PetscInt)f->symbolic->n;
   f->num_fronts = (PetscInt)f->symbolic->nsuper;
   f->column = f->symbolic->super;
@@ -196,6 +195,7 @@ PetscErrorCode EqmFrontalCreate(const cholmod_sparse *pattern, PetscInt *order, 
   PetscCall(PetscNew(&f));
   *out = f;
   PetscCall(Analyse(f, pattern, order));
+  if (f->no_memory) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(f->num_unknowns, &f->position));
   for (PetscInt k = 0; k < f->num_unknowns; k++) f->position[((const PetscInt *)f->symbolic->Perm)[k]] = k;
   PetscCall(MakeTree(f));
@@ -217,9 +217,21 @@ PetscErrorCode EqmFrontalDestroy(EqmFrontal *out)
   PetscCall(PetscFree4(f->at_parent, f->at_end, f->is_branch, f->is_inside));
   PetscCall(PetscFree4(f->stack, f->most_rows, f->passed_start, f->update));
   PetscCall(PetscFree3(f->entry_start, f->entry_source, f->entry_target));
-  PetscCall(PetscFree(f->value));
+  free(f->value);
   PetscCall(PetscFree2(f->columns, f->passed));
   PetscCall(PetscFree(*out));
+  PetscFunctionReturn(0);
+}
+
+PetscBool EqmFrontalHasMemory(EqmFrontal f)
+{
+  return (PetscBool)!f->no_memory;
+}
+
+PetscErrorCode EqmFrontalGetPositions(EqmFrontal f, const PetscInt **position)
+{
+  PetscFunctionBegin;
+  *position = f->position;
   PetscFunctionReturn(0);
 }
 

@@ -11,16 +11,30 @@
 typedef struct _p_EqmFrontal *EqmFrontal;
 
 /* Symbolic work. `pattern`: the upper triangle by columns, rows sorted, values not looked at; `order[k]`: which unknown
-   is the k-th to eliminate. Errors: PETSC_ERR_MEM. Not collective. */
+   is the k-th to eliminate. Not collective. */
 PETSC_INTERN PetscErrorCode EqmFrontalCreate(const cholmod_sparse *pattern, PetscInt *order, EqmFrontal *frontal);
 PETSC_INTERN PetscErrorCode EqmFrontalDestroy(EqmFrontal *frontal);
+/* Had the last call the memory that it needed? Else nothing but EqmFrontalDestroy may follow. Not collective. */
+PETSC_INTERN PetscBool EqmFrontalHasMemory(EqmFrontal frontal);
 /* Add what the factor takes to an estimate. Not collective. */
 PETSC_INTERN PetscErrorCode EqmFrontalGetCost(EqmFrontal frontal, EqmEstimate *estimate);
-/* New values, in the order of the pattern's entries. `success` is false if the matrix is not positive definite. Errors:
-   PETSC_ERR_MEM. Not collective. */
+/* New values, in the order of the pattern's entries. `success` is false if the matrix is not positive definite. Not
+   collective. */
 PETSC_INTERN PetscErrorCode EqmFrontalFactor(EqmFrontal frontal, const PetscScalar *value, PetscBool *success);
-/* x = A^-1 b for columns of the unknowns, stored one after the other; x and b may be the same array. Errors:
-   PETSC_ERR_MEM. Not collective. */
-PETSC_INTERN PetscErrorCode EqmFrontalSolve(EqmFrontal frontal, PetscInt num_rhs, const PetscScalar *b, PetscScalar *x);
+
+/* With P the permutation to the order of elimination, P A P^T = L L^T. */
+typedef enum {
+  EQM_SOLVE_FORWARD = 1,  /* x = P^T L^-1 P b */
+  EQM_SOLVE_BACKWARD = 2, /* x = P^T L^-T P b */
+  EQM_SOLVE_BOTH = 3      /* x = A^-1 b */
+} EqmSolveHalf;
+/* Solve for columns of the unknowns, stored one after the other; x and b may be the same array. Not collective. */
+PETSC_INTERN PetscErrorCode EqmFrontalSolve(EqmFrontal frontal, EqmSolveHalf half, PetscInt num_rhs,
+                                            const PetscScalar *b, PetscScalar *x);
+/* Where each unknown stands in the order of elimination. Not collective. */
+PETSC_INTERN PetscErrorCode EqmFrontalGetPositions(EqmFrontal frontal, const PetscInt **position);
+/* The dense block of L at `n` unknowns, by columns: `at` says per position which row and column of it, -1 if none.
+   Not collective. */
+PETSC_INTERN PetscErrorCode EqmFrontalGetBlock(EqmFrontal frontal, PetscInt n, const PetscInt *at, PetscScalar *block);
 
 #endif

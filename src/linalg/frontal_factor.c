@@ -172,8 +172,10 @@ PetscErrorCode EqmFrontalFactor(EqmFrontal f, const PetscScalar *value, PetscBoo
                         num_roots = f->child_start[f->num_fronts + 1] - f->child_start[f->num_fronts];
 
   PetscFunctionBegin;
-  if (!f->value) PetscCall(PetscMalloc1(f->symbolic->xsize, &f->value));
+  *success = PETSC_FALSE;
   f->not_definite = f->no_memory = 0;
+  if (!f->value) f->value = Allocate(f, f->symbolic->xsize);
+  if (f->no_memory) PetscFunctionReturn(0);
 #pragma omp parallel if (f->flops > EQM_FRONTAL_LEAST_FLOPS)
 #pragma omp single
   {
@@ -183,8 +185,24 @@ PetscErrorCode EqmFrontalFactor(EqmFrontal f, const PetscScalar *value, PetscBoo
     }
   }
   for (PetscInt k = 0; k < num_roots; k++) free(f->update[root[k]]);
-  PetscCheck(!f->no_memory, PETSC_COMM_SELF, PETSC_ERR_MEM,
-             "too little memory to factor a matrix on this rank; use more ranks or -linear_solver multigrid");
-  *success = (PetscBool)!f->not_definite;
+  *success = (PetscBool)!HasFailed(f);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmFrontalGetBlock(EqmFrontal f, PetscInt n, const PetscInt *at, PetscScalar *block)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(block, (size_t)n * (size_t)n));
+  for (PetscInt k = 0; k < f->num_fronts; k++) {
+    const PetscInt rows = EqmFrontRows(f, k), columns = EqmFrontColumns(f, k);
+    for (PetscInt j = 0; j < columns; j++) {
+      const PetscScalar *const from = f->value + f->value_start[k] + (size_t)j * (size_t)rows;
+      const PetscInt column = at[f->column[k] + j];
+      for (PetscInt i = j; i < rows && column >= 0; i++) { /* fronts hold zeros of other unknowns, too */
+        const PetscInt row = at[f->row[f->row_start[k] + i]];
+        if (row >= 0) block[(size_t)column * (size_t)n + (size_t)row] = from[i];
+      }
+    }
+  }
   PetscFunctionReturn(0);
 }

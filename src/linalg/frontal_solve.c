@@ -129,7 +129,7 @@ static void BackwardTree(const Sweep *s, PetscInt k)
 }
 
 /* At most EQM_MOST_COLUMNS columns. */
-static void SolveColumns(EqmFrontal f, PetscInt count, const PetscScalar *b, PetscScalar *x)
+static void SolveColumns(EqmFrontal f, EqmSolveHalf half, PetscInt count, const PetscScalar *b, PetscScalar *x)
 {
   const PetscInt n = f->num_unknowns, *const root = f->child + f->child_start[f->num_fronts],
                  num_roots = f->child_start[f->num_fronts + 1] - f->child_start[f->num_fronts];
@@ -143,12 +143,12 @@ static void SolveColumns(EqmFrontal f, PetscInt count, const PetscScalar *b, Pet
         f->columns[(size_t)f->position[i] * (size_t)count + c] = b[(size_t)c * (size_t)n + i];
     }
 #pragma omp single
-    for (PetscInt k = 0; k < num_roots; k++) {
+    for (PetscInt k = 0; k < num_roots && half & EQM_SOLVE_FORWARD; k++) {
 #pragma omp task default(none) firstprivate(s, k) shared(root)
       ForwardTree(s, root[k]);
     }
 #pragma omp single
-    for (PetscInt k = 0; k < num_roots; k++) {
+    for (PetscInt k = 0; k < num_roots && half & EQM_SOLVE_BACKWARD; k++) {
 #pragma omp task default(none) firstprivate(s, k) shared(root)
       BackwardTree(s, root[k]);
     }
@@ -160,17 +160,14 @@ static void SolveColumns(EqmFrontal f, PetscInt count, const PetscScalar *b, Pet
   }
 }
 
-PetscErrorCode EqmFrontalSolve(EqmFrontal f, PetscInt num_rhs, const PetscScalar *b, PetscScalar *x)
+PetscErrorCode EqmFrontalSolve(EqmFrontal f, EqmSolveHalf half, PetscInt num_rhs, const PetscScalar *b, PetscScalar *x)
 {
-  const size_t n = (size_t)f->num_unknowns;
+  const size_t n = (size_t)f->num_unknowns, passed = (size_t)f->passed_start[f->num_fronts];
 
   PetscFunctionBegin;
-  if (!f->columns)
-    PetscCall(
-        PetscMalloc2(EQM_MOST_COLUMNS * n, &f->columns, EQM_MOST_COLUMNS * f->passed_start[f->num_fronts], &f->passed));
+  if (!f->columns) PetscCall(PetscMalloc2(EQM_MOST_COLUMNS * n, &f->columns, EQM_MOST_COLUMNS * passed, &f->passed));
   f->no_memory = 0;
   for (PetscInt c = 0; c < num_rhs; c += EQM_MOST_COLUMNS)
-    SolveColumns(f, PetscMin(EQM_MOST_COLUMNS, num_rhs - c), b + (size_t)c * n, x + (size_t)c * n);
-  PetscCheck(!f->no_memory, PETSC_COMM_SELF, PETSC_ERR_MEM, "too little memory for the right-hand sides of a solve");
+    SolveColumns(f, half, PetscMin(EQM_MOST_COLUMNS, num_rhs - c), b + (size_t)c * n, x + (size_t)c * n);
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,15 @@
 /* The multifrontal factor as a linear solver: one rank, any number of threads. */
 #include "linalg/frontal.h"
 
+/* Has it the memory for what it did last? */
+static PetscErrorCode Check(EqmFrontal frontal, const char *what)
+{
+  PetscFunctionBegin;
+  PetscCheck(EqmFrontalHasMemory(frontal), PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "too little memory for the %s of a matrix on one rank; use more ranks, or -linear_solver multigrid", what);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
 {
   EqmFrontal frontal;
@@ -15,6 +24,7 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
   linear->data = frontal;
   PetscCall(EqmCholmodRestoreView(linear, &view));
   PetscCall(PetscFree(order));
+  PetscCall(Check(frontal, "analysis"));
   PetscCall(EqmFrontalGetCost(frontal, &linear->estimate));
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscFunctionReturn(0);
@@ -28,6 +38,7 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscFunctionBegin;
   PetscCall(EqmCholmodGetView(linear, &view));
   PetscCall(EqmFrontalFactor(frontal, view.x, success));
+  PetscCall(Check(frontal, "factorisation"));
   PetscCall(EqmCholmodRestoreView(linear, &view));
   PetscFunctionReturn(0);
 }
@@ -35,7 +46,8 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
 static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success)
 {
   PetscFunctionBegin;
-  PetscCall(EqmFrontalSolve(linear->data, num_rhs, b, x));
+  PetscCall(EqmFrontalSolve(linear->data, EQM_SOLVE_BOTH, num_rhs, b, x));
+  PetscCall(Check(linear->data, "solutions"));
   PetscFunctionReturn(0);
 }
 

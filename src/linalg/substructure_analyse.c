@@ -1,7 +1,7 @@
 /* Symbolic work of substructuring (substructure.c says what it is). */
 #include "linalg/substructure.h"
 
-static PetscErrorCode CreateEdges(EqmLinear linear, const EqmSeparation *separation)
+static PetscErrorCode CreateSeparatorUnknowns(EqmLinear linear, const EqmSeparation *separation)
 {
   EqmSubstructure *const s = linear->data;
   const EqmUnknowns *const u = &linear->unknowns;
@@ -9,17 +9,17 @@ static PetscErrorCode CreateEdges(EqmLinear linear, const EqmSeparation *separat
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < separation->num_separators; k++) n += u->count[separation->vertex[k]];
-  s->num_edge = n;
-  PetscCall(
-      PetscMalloc5(n, &s->edge_vertex, n, &s->edge_component, n, &s->edge_links, n, &s->edge_unknown, n, &s->shift));
+  s->num_separator_unknowns = n;
+  PetscCall(PetscMalloc5(n, &s->separator_vertex, n, &s->separator_component, n, &s->separator_links, n,
+                         &s->separator_unknown, n, &s->shift));
   n = 0;
   for (PetscInt k = 0; k < separation->num_separators; k++) {
     const PetscInt v = separation->vertex[k];
     for (PetscInt c = 0; c < u->count[v]; c++, n++) {
-      s->edge_vertex[n] = v;
-      s->edge_component[n] = c;
-      s->edge_links[n] = separation->links[k];
-      s->edge_unknown[n] = u->start[v] + c;
+      s->separator_vertex[n] = v;
+      s->separator_component[n] = c;
+      s->separator_links[n] = separation->links[k];
+      s->separator_unknown[n] = u->start[v] + c;
     }
   }
   PetscFunctionReturn(0);
@@ -34,14 +34,14 @@ static PetscErrorCode NumberOwned(EqmLinear linear, const EqmSeparation *separat
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(linear->num_owned, &s->local));
   for (PetscInt i = 0; i < linear->num_owned; i++) s->local[i] = 0;
-  for (PetscInt k = 0; k < s->num_edge; k++) {
-    const PetscInt i = s->edge_unknown[k] - u->first;
+  for (PetscInt k = 0; k < s->num_separator_unknowns; k++) {
+    const PetscInt i = s->separator_unknown[k] - u->first;
     if (i >= 0 && i < linear->num_owned) s->local[i] = 1;
   }
   s->num_inner = 0;
   for (PetscInt i = 0; i < linear->num_owned; i++) s->local[i] = s->local[i] ? -1 : s->num_inner++;
-  for (PetscInt k = 0; k < s->num_edge; k++) {
-    const PetscInt i = s->edge_unknown[k] - u->first;
+  for (PetscInt k = 0; k < s->num_separator_unknowns; k++) {
+    const PetscInt i = s->separator_unknown[k] - u->first;
     if (i >= 0 && i < linear->num_owned) s->local[i] = s->num_inner + k;
   }
   PetscFunctionReturn(0);
@@ -57,7 +57,7 @@ static PetscErrorCode LocalColumn(const EqmSubstructure *s, const EqmBlocks *blo
   if (block == 0) {
     *local = s->local[column];
   } else {
-    PetscCall(PetscFindInt(blocks->global_column[column], s->num_edge, s->edge_unknown, &place));
+    PetscCall(PetscFindInt(blocks->global_column[column], s->num_separator_unknowns, s->separator_unknown, &place));
     PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a column of another rank is no separator's");
     *local = s->num_inner + place;
   }
@@ -68,24 +68,24 @@ static PetscErrorCode LocalColumn(const EqmSubstructure *s, const EqmBlocks *blo
 static PetscErrorCode PlaceEntries(EqmLinear linear, const EqmBlocks *blocks, PetscInt *count, PetscInt *next)
 {
   EqmSubstructure *const s = linear->data;
-  const PetscInt first_edge = s->num_inner;
+  const PetscInt first_separator = s->num_inner;
   PetscInt *const column = s->matrix.i;
 
   PetscFunctionBegin;
-  s->num_direct = 0;
+  s->num_couplings = 0;
   for (PetscInt i = 0; i < linear->num_owned; i++) {
     for (int block = 0; block < 2 && blocks->block[block]; block++) {
       for (PetscInt q = blocks->start[block][i]; q < blocks->start[block][i + 1]; q++) {
         const PetscInt source = block == 0 ? q : -1 - q;
         PetscInt a = s->local[i], b;
         PetscCall(LocalColumn(s, blocks, block, blocks->column[block][q], &b));
-        if (a >= first_edge && b >= first_edge) {
+        if (a >= first_separator && b >= first_separator) {
           if (next) {
-            s->direct[3 * s->num_direct] = source;
-            s->direct[3 * s->num_direct + 1] = a - first_edge;
-            s->direct[3 * s->num_direct + 2] = b - first_edge;
+            s->coupling[3 * s->num_couplings] = source;
+            s->coupling[3 * s->num_couplings + 1] = a - first_separator;
+            s->coupling[3 * s->num_couplings + 2] = b - first_separator;
           }
-          s->num_direct++;
+          s->num_couplings++;
           continue;
         }
         if (!next) {
@@ -105,7 +105,7 @@ static PetscErrorCode PlaceEntries(EqmLinear linear, const EqmBlocks *blocks, Pe
 static PetscErrorCode MakePattern(EqmLinear linear)
 {
   EqmSubstructure *const s = linear->data;
-  const PetscInt n = s->num_inner + s->num_edge;
+  const PetscInt n = s->num_inner + s->num_separator_unknowns;
   PetscInt *start, *next;
   EqmBlocks blocks;
   Mat matrix;
@@ -121,7 +121,7 @@ static PetscErrorCode MakePattern(EqmLinear linear)
                                .nzmax = (size_t)start[n],
                                .p = start,
                                .stype = 1,
-                               .itype = s->common.itype,
+                               .itype = sizeof(PetscInt) == sizeof(int) ? CHOLMOD_INT : CHOLMOD_LONG,
                                .xtype = CHOLMOD_REAL,
                                .dtype = CHOLMOD_DOUBLE,
                                .sorted = 1,
@@ -129,7 +129,7 @@ static PetscErrorCode MakePattern(EqmLinear linear)
   PetscCall(PetscMalloc1(start[n], (PetscInt **)&s->matrix.i));
   PetscCall(PetscMalloc1(start[n], (PetscScalar **)&s->matrix.x));
   PetscCall(PetscMalloc1(start[n], &s->source));
-  PetscCall(PetscMalloc1(3 * s->num_direct, &s->direct));
+  PetscCall(PetscMalloc1(3 * s->num_couplings, &s->coupling));
   PetscCall(PetscMalloc1(n, &next));
   PetscCall(PetscArraycpy(next, start, n));
   PetscCall(PlaceEntries(linear, &blocks, NULL, next));
@@ -144,25 +144,19 @@ static PetscErrorCode AnalyseInner(EqmLinear linear, const EqmSeparation *separa
 {
   EqmSubstructure *const s = linear->data;
   const EqmUnknowns *const u = &linear->unknowns;
-  const PetscInt n = s->num_inner + s->num_edge;
+  const PetscInt n = s->num_inner + s->num_separator_unknowns;
   PetscInt *order, count = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(n, &s->position));
-  for (PetscInt k = 0; k < n; k++) s->position[k] = k;
-  if (s->num_inner > 0) {
-    PetscCall(PetscMalloc1(n, &order));
-    for (PetscInt k = 0; k < separation->num_inner; k++) {
-      const PetscInt v = separation->inner[k];
-      for (PetscInt c = 0; c < u->count[v]; c++) order[count++] = s->local[u->start[v] - u->first + c];
-    }
-    for (PetscInt k = s->num_inner; k < n; k++) order[count++] = k;
-    s->common.nmethods = 1;
-    s->common.method[0].ordering = CHOLMOD_GIVEN;
-    s->factor = CHOLMOD(analyze_p)(&s->matrix, order, NULL, 0, &s->common);
-    PetscCall(PetscFree(order));
-    for (PetscInt k = 0; s->factor && k < n; k++) s->position[((PetscInt *)s->factor->Perm)[k]] = k;
+  if (s->num_inner == 0) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, &order));
+  for (PetscInt k = 0; k < separation->num_inner; k++) {
+    const PetscInt v = separation->inner[k];
+    for (PetscInt c = 0; c < u->count[v]; c++) order[count++] = s->local[u->start[v] - u->first + c];
   }
+  for (PetscInt k = s->num_inner; k < n; k++) order[count++] = k;
+  PetscCall(EqmFrontalCreate(&s->matrix, order, &s->factor));
+  PetscCall(PetscFree(order));
   PetscFunctionReturn(0);
 }
 
@@ -170,45 +164,46 @@ static PetscErrorCode AnalyseInner(EqmLinear linear, const EqmSeparation *separa
 static PetscErrorCode CreateInterface(EqmLinear linear, const EqmSeparation *separation)
 {
   EqmSubstructure *const s = linear->data;
-  const PetscInt n = s->num_edge;
-  PetscInt *position, *edge, *unknown, *span, *of_edge, count = 0;
+  const PetscInt n = s->num_separator_unknowns;
+  const PetscInt *eliminated = NULL;
+  PetscInt *position, *in_order, *unknown, *span, *vertex_of, count = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc5(n, &position, n, &edge, n, &unknown, 2 * n, &span, n, &of_edge));
+  if (s->factor) PetscCall(EqmFrontalGetPositions(s->factor, &eliminated));
+  PetscCall(PetscMalloc5(n, &position, n, &in_order, n, &unknown, 2 * n, &span, n, &vertex_of));
   for (PetscInt k = 0; k < separation->num_separators; k++) {
-    for (PetscInt c = 0; c < linear->unknowns.count[separation->vertex[k]]; c++) of_edge[count++] = k;
+    for (PetscInt c = 0; c < linear->unknowns.count[separation->vertex[k]]; c++) vertex_of[count++] = k;
   }
   for (PetscInt k = 0; k < n; k++) {
-    position[k] = s->position[s->num_inner + k];
-    edge[k] = k;
+    position[k] = eliminated ? eliminated[s->num_inner + k] : s->num_inner + k;
+    in_order[k] = k;
   }
-  PetscCall(PetscSortIntWithArray(n, position, edge));
+  PetscCall(PetscSortIntWithArray(n, position, in_order));
   PetscCall(PetscMalloc1(n, &s->place));
-  PetscCall(PetscMalloc1(s->num_inner + n, &s->corner_at));
-  for (PetscInt k = 0; k < s->num_inner + n; k++) s->corner_at[k] = -1;
+  PetscCall(PetscMalloc1(s->num_inner + n, &s->separator_at));
+  for (PetscInt k = 0; k < s->num_inner + n; k++) s->separator_at[k] = -1;
   for (PetscInt k = 0; k < n; k++) {
-    s->place[edge[k]] = s->corner_at[position[k]] = k;
-    unknown[k] = s->edge_unknown[edge[k]];
-    span[2 * k] = separation->span[2 * of_edge[edge[k]]];
-    span[2 * k + 1] = separation->span[2 * of_edge[edge[k]] + 1];
+    s->place[in_order[k]] = s->separator_at[position[k]] = k;
+    unknown[k] = s->separator_unknown[in_order[k]];
+    span[2 * k] = separation->span[2 * vertex_of[in_order[k]]];
+    span[2 * k + 1] = separation->span[2 * vertex_of[in_order[k]] + 1];
   }
   PetscCall(EqmInterfaceCreate(linear->mesh->comm, n, unknown, span, &s->interface));
-  PetscCall(PetscFree5(position, edge, unknown, span, of_edge));
+  PetscCall(PetscFree5(position, in_order, unknown, span, vertex_of));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSubstructureAgree(EqmLinear linear, const char *what)
+PetscErrorCode EqmSubstructureCheckMemory(EqmLinear linear, const char *what)
 {
   EqmSubstructure *const s = linear->data;
+  const PetscBool enough = (PetscBool)(!s->factor || EqmFrontalHasMemory(s->factor));
   char message[EQM_MESSAGE_MAX];
 
   PetscFunctionBegin;
-  PetscCall(
-      PetscSNPrintf(message, sizeof(message),
-                    "CHOLMOD's %s failed on rank %d (status %d): too little memory for its share of the mesh; use "
-                    "more ranks or nodes",
-                    what, linear->mesh->rank, s->common.status));
-  PetscCall(EqmAgree(linear->mesh->comm, s->common.status < 0 ? PETSC_ERR_MEM : 0, message));
+  PetscCall(PetscSNPrintf(message, sizeof(message),
+                          "too little memory on rank %d for the %s of its share of a matrix; use more ranks or nodes",
+                          linear->mesh->rank, what));
+  PetscCall(EqmAgree(linear->mesh->comm, enough ? 0 : PETSC_ERR_MEM, message));
   PetscFunctionReturn(0);
 }
 
@@ -222,20 +217,20 @@ PetscErrorCode EqmSubstructureAnalyse(EqmLinear linear, EqmOrdering ordering)
   PetscFunctionBegin;
   PetscCall(EqmOrderingGetSeparation(ordering, &separation));
   PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
-  PetscCall(CreateEdges(linear, separation));
+  PetscCall(CreateSeparatorUnknowns(linear, separation));
   PetscCall(NumberOwned(linear, separation));
   PetscCall(MakePattern(linear));
   PetscCall(AnalyseInner(linear, separation));
-  PetscCall(EqmSubstructureAgree(linear, "analysis"));
+  PetscCall(EqmSubstructureCheckMemory(linear, "analysis"));
   PetscCall(CreateInterface(linear, separation));
   PetscCall(EqmInterfaceGetCost(s->interface, &e->largest_front, &bytes, &flops));
-  if (s->factor) EqmEstimateCholmod(s->factor, &s->common, e);
+  if (s->factor) PetscCall(EqmFrontalGetCost(s->factor, e));
   local[0] = e->nonzeros;
   local[1] = e->flops + flops;
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPIU_SUM, linear->mesh->comm));
   e->nonzeros = sum[0];
   e->flops = sum[1];
-  e->bytes_on_rank += bytes + (PetscReal)sizeof(PetscScalar) * PetscSqr((PetscReal)s->num_edge);
+  e->bytes_on_rank += bytes + (PetscReal)sizeof(PetscScalar) * PetscSqr((PetscReal)s->num_separator_unknowns);
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscFunctionReturn(0);
 }
