@@ -15,7 +15,7 @@ static const char *const late_names[] = {
     "options_view",      "random_seed",   "random_type",    "shared_tmp"};
 
 /* What its matrices, vectors and solvers ask for when they are made: all that begins so. */
-static const char *const late_prefixes[] = {"hessian_eps_", "hessian_st_", "mat_",        "multigrid_",
+static const char *const late_prefixes[] = {"hessian_eps_", "hessian_st_", "mat_",        "linear_", "multigrid_",
                                             "sf_",          "unfold_",     "vecscatter_", "vec_"};
 
 /* The options that were let through for their beginnings. */

@@ -69,11 +69,12 @@ typedef enum {
   EQM_SOLVER_MULTIFRONTAL,
   EQM_SOLVER_SUBSTRUCTURE,
   EQM_SOLVER_MUMPS,
-  EQM_SOLVER_MULTIGRID
+  EQM_SOLVER_MULTIGRID,
+  EQM_SOLVER_PETSC
 } EqmSolverKind;
 PETSC_INTERN const char *const EqmSolverKinds[];
 
-/* What a factorisation takes, known before there are numbers; zero for multigrid. */
+/* What a factorisation takes, known before there are numbers; zero for multigrid and PETSc's solvers. */
 typedef struct {
   PetscReal nonzeros, flops; /* of the factor, all ranks together */
   PetscReal bytes_on_rank;   /* on this rank at most at once: factor, fronts and work space, not the matrix itself */
@@ -147,6 +148,7 @@ PETSC_INTERN PetscErrorCode EqmLinearSetUpMultifrontal(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpSubstructure(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpMumps(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetUpMultigrid(EqmLinear linear);
+PETSC_INTERN PetscErrorCode EqmLinearSetUpPetsc(EqmLinear linear);
 
 /* ---- square matrices that are not positive definite (general.c) */
 typedef struct _p_EqmGeneral *EqmGeneral;

@@ -1,9 +1,8 @@
 /* One face for the direct solvers and multigrid: which of them a matrix gets. What it does then: linear_solve.c. */
 #include "linalg/linalg.h"
 
-const char *const EqmSolverKinds[] = {"auto",          "cholmod",     "multifrontal",
-                                      "substructure",  "mumps",       "multigrid",
-                                      "EqmSolverKind", "EQM_SOLVER_", NULL};
+const char *const EqmSolverKinds[] = {"auto",      "cholmod", "multifrontal",  "substructure", "mumps",
+                                      "multigrid", "petsc",   "EqmSolverKind", "EQM_SOLVER_",  NULL};
 
 /* Larger fronts take half a gigabyte on one rank, and minutes that the other ranks wait. */
 enum { MOST_FRONT = 8000 };
@@ -50,12 +49,17 @@ static PetscErrorCode Try(EqmLinear linear, EqmOrdering ordering, EqmSolverKind 
   case EQM_SOLVER_MUMPS:
     PetscCall(EqmLinearSetUpMumps(linear));
     break;
+  case EQM_SOLVER_PETSC:
+    PetscCall(EqmLinearSetUpPetsc(linear));
+    break;
   default:
     PetscCall(EqmLinearSetUpMultigrid(linear));
   }
   PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_ASSEMBLE));
-  PetscCall(EqmAssemblyCreate(linear->mesh, &linear->rows,
-                              kind == EQM_SOLVER_MULTIGRID ? EQM_STORE_FULL : EQM_STORE_LOWER, &linear->assembly));
+  PetscCall(
+      EqmAssemblyCreate(linear->mesh, &linear->rows,
+                        kind == EQM_SOLVER_MULTIGRID || kind == EQM_SOLVER_PETSC ? EQM_STORE_FULL : EQM_STORE_LOWER,
+                        &linear->assembly));
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_ASSEMBLE));
   PetscCall(linear->analyse(linear, ordering));
   mine = e->bytes_on_rank;
@@ -87,7 +91,8 @@ static PetscBool IsCostly(EqmLinear linear)
    substructuring gives the same bits in every run, as long as what is left between the ranks is no burden. */
 static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal limit)
 {
-  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD}, together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
+  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD},
+                             together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
   const PetscBool is_alone = (PetscBool)(linear->mesh->size == 1);
   const EqmSolverKind *const direct = is_alone ? alone : together;
   const PetscInt num_direct = is_alone ? 1 : 2;
@@ -169,8 +174,9 @@ PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length)
   char between[64] = "";
 
   PetscFunctionBegin;
-  if (linear->kind == EQM_SOLVER_MULTIGRID) {
-    PetscCall(PetscSNPrintf(text, length, "multigrid (%" PetscInt_FMT " unknowns)", linear->num_unknowns));
+  if (linear->kind == EQM_SOLVER_MULTIGRID || linear->kind == EQM_SOLVER_PETSC) {
+    PetscCall(PetscSNPrintf(text, length, "%s (%" PetscInt_FMT " unknowns)", EqmSolverKinds[linear->kind],
+                            linear->num_unknowns));
     PetscFunctionReturn(0);
   }
   if (linear->kind == EQM_SOLVER_SUBSTRUCTURE)

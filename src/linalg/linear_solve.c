@@ -135,8 +135,9 @@ PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscRea
 
   PetscFunctionBegin;
   PetscCall(EqmLinearTrySolve(linear, num_rhs, b, x, &success));
-  PetscCheck(success, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
-             "multigrid did not converge: the matrix may not be definite; try -linear_solver %s",
-             linear->mesh->size == 1 ? "multifrontal" : "mumps");
+  PetscCheck(
+      success, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
+      "the iteration of -linear_solver %s did not converge: the matrix may not be definite; try -linear_solver %s",
+      EqmSolverKinds[linear->kind], linear->mesh->size == 1 ? "multifrontal" : "mumps");
   PetscFunctionReturn(0);
 }

@@ -7,10 +7,10 @@ PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject)
   PetscReal limit = 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsEnum(
-      "-linear_solver",
-      "what solves with matrices; multifrontal and cholmod are for one rank, substructure and mumps for several",
-      "EqmLinearCreate", EqmSolverKinds, kind, &kind, NULL));
+  PetscCall(PetscOptionsEnum("-linear_solver",
+                             "what solves with matrices; multifrontal and cholmod are for one rank, substructure and "
+                             "mumps for several; petsc: by -linear_ksp_type, -linear_pc_type, ...",
+                             "EqmLinearCreate", EqmSolverKinds, kind, &kind, NULL));
   PetscCall(
       PetscOptionsReal("-memory_limit",
                        "at most so many GiB per rank for factors; beyond, -linear_solver auto iterates (0: most of "
@@ -25,10 +25,11 @@ PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject)
 /* Does an option steer the solvers? */
 static PetscErrorCode SteersSolvers(const char *name, PetscBool *steers)
 {
-  static const char *const names[] = {"-linear_solver", "-memory_limit"};
+  static const char *const names[] = {"-memory_limit"};
 
   PetscFunctionBegin;
   PetscCall(PetscStrbeginswith(name, "-multigrid_", steers));
+  if (!*steers) PetscCall(PetscStrbeginswith(name, "-linear_", steers));
   for (size_t k = 0; k < sizeof(names) / sizeof(names[0]) && !*steers; k++)
     PetscCall(PetscStrcmp(name, names[k], steers));
   PetscFunctionReturn(0);

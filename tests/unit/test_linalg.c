@@ -185,7 +185,7 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   PetscFunctionBegin;
   PetscCall(TestOptionsBegin(option, &options));
   PetscCall(EqmLinearCreate(mesh, ordering, unknowns, use, &linear));
-  const PetscBool direct = (PetscBool)(linear->kind != EQM_SOLVER_MULTIGRID);
+  const PetscBool direct = (PetscBool)(linear->kind != EQM_SOLVER_MULTIGRID && linear->kind != EQM_SOLVER_PETSC);
   const PetscReal tolerance = direct ? 1e-12 : 1e-9;
   PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
   before = *work;
@@ -264,6 +264,9 @@ static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, Eq
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver substructure"));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver mumps"));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver multigrid"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver petsc"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, use,
+                       "-linear_solver petsc -linear_pc_type jacobi -linear_mat_type sbaij -linear_ksp_max_it 5000"));
   for (PetscInt k = 0; k < 2; k++) {
     const char *const option = k ? "-linear_solver multifrontal" : "-linear_solver cholmod";
     if (mesh->size == 1)
