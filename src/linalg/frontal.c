@@ -1,7 +1,7 @@
 /* Symbolic work of the multifrontal factor: supernodes by CHOLMOD, then which front takes what from where, and which
    branches of the tree one thread does alone. */
 #include "linalg/frontal_private.h"
-#include "linalg/narrow.h"
+#include "base/narrow.h"
 #include <stdlib.h>
 
 /* A branch has at most this share of the work: enough of them for the threads of a large node, few enough that handing

@@ -2,7 +2,7 @@
    multifrontal solution of indefinite sparse symmetric linear equations, ACM TOMS 9, 1983), with the tree and thereby
    every sum fixed in advance. */
 #include "linalg/interface_private.h"
-#include "linalg/narrow.h"
+#include "base/narrow.h"
 
 enum { MOST_LEVELS = 32 };
 

@@ -1,6 +1,6 @@
 /* The factorisation on a tree of ranks, front by front. */
 #include "linalg/interface_private.h"
-#include "linalg/narrow.h"
+#include "base/narrow.h"
 
 /* Entries of the lower triangle of an n x n matrix, as many as one message may carry. */
 static PetscErrorCode CountTriangle(PetscInt n, PetscMPIInt *count)

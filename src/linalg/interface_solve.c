@@ -1,6 +1,6 @@
 /* Solves on a tree of ranks: up with L, down with its transpose. */
 #include "linalg/interface_private.h"
-#include "linalg/narrow.h"
+#include "base/narrow.h"
 
 /* Columns of `count` numbers each, from and to rows of a front. */
 static void AddRows(const PetscInt *place, PetscInt count, PetscInt num_rhs, const PetscScalar *from, PetscInt rows,

@@ -59,8 +59,6 @@ typedef struct {
 PETSC_INTERN PetscErrorCode EqmOrderingGetSeparation(EqmOrdering ordering, const EqmSeparation **separation);
 PETSC_INTERN PetscErrorCode EqmSeparationCreate(EqmMesh mesh, EqmSeparation **separation);
 PETSC_INTERN PetscErrorCode EqmSeparationDestroy(EqmSeparation **separation);
-/* Nested dissection of a graph: `order[k]` is eliminated as the k-th. Degrees become starts. Not collective. */
-PETSC_INTERN PetscErrorCode EqmDissect(PetscInt n, PetscInt *degree_then_start, PetscInt *neighbor, PetscInt *order);
 
 /* ---- solvers */
 typedef enum {

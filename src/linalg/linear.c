@@ -91,8 +91,7 @@ static PetscBool IsCostly(EqmLinear linear)
    substructuring gives the same bits in every run, as long as what is left between the ranks is no burden. */
 static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal limit)
 {
-  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD},
-                             together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
+  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD}, together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
   const PetscBool is_alone = (PetscBool)(linear->mesh->size == 1);
   const EqmSolverKind *const direct = is_alone ? alone : together;
   const PetscInt num_direct = is_alone ? 1 : 2;

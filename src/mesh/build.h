@@ -24,6 +24,7 @@ PETSC_INTERN PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger,
 PETSC_INTERN PetscErrorCode EqmOrderCuthillMcKee(const EqmGraph *graph, PetscInt *new_number);
 PETSC_INTERN PetscErrorCode EqmRunMetis(PetscInt num_parts, PetscInt n, PetscInt *start, PetscInt *neighbor,
                                         PetscInt *part);
+PETSC_INTERN PetscErrorCode EqmDissect(PetscInt n, PetscInt *degree_then_start, PetscInt *neighbor, PetscInt *order);
 PETSC_INTERN PetscInt EqmNumBlocks(PetscInt cell_size, PetscInt num_vertices);
 PETSC_INTERN PetscErrorCode EqmCutBlocks(PetscInt num_vertices, PetscInt num_blocks, PetscInt *block_vertex);
 PETSC_INTERN PetscErrorCode EqmOrderBlocks(const EqmGraph *graph, PetscInt num_blocks, PetscInt *new_number,

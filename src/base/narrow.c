@@ -1,5 +1,5 @@
 /* Conversions to the integers of other libraries. */
-#include "linalg/narrow.h"
+#include "base/narrow.h"
 #include <stdint.h>
 
 PetscErrorCode EqmCheckFits(PetscInt64 number, size_t width, const char *library, const char *what)
