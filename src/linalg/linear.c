@@ -1,9 +1,6 @@
 /* One face for the direct solvers and multigrid: which of them a matrix gets. What it does then: linear_solve.c. */
 #include "linalg/linalg.h"
 
-const char *const EqmSolverKinds[] = {"auto",      "cholmod", "multifrontal",  "substructure", "mumps",
-                                      "multigrid", "petsc",   "EqmSolverKind", "EQM_SOLVER_",  NULL};
-
 /* Larger fronts take half a gigabyte on one rank, and minutes that the other ranks wait. */
 enum { MOST_FRONT = 8000 };
 /* Operations of a factor per unknown, beyond which one set-up of multigrid and the solves with it cost less; scalar
@@ -91,7 +88,8 @@ static PetscBool IsCostly(EqmLinear linear)
    substructuring gives the same bits in every run, as long as what is left between the ranks is no burden. */
 static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal limit)
 {
-  static const EqmSolverKind alone[] = {EQM_SOLVER_CHOLMOD}, together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
+  static const EqmSolverKind alone[] = {EQM_SOLVER_MULTIFRONTAL},
+                             together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
   const PetscBool is_alone = (PetscBool)(linear->mesh->size == 1);
   const EqmSolverKind *const direct = is_alone ? alone : together;
   const PetscInt num_direct = is_alone ? 1 : 2;

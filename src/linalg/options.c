@@ -1,6 +1,9 @@
 /* The options of linear solvers: which there are, and which of them a run inside another one takes over. */
 #include "linalg/linalg.h"
 
+const char *const EqmSolverKinds[] = {"auto",      "cholmod", "multifrontal",  "substructure", "mumps",
+                                      "multigrid", "petsc",   "EqmSolverKind", "EQM_SOLVER_",  NULL};
+
 PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject)
 {
   PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
