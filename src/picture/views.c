@@ -135,11 +135,12 @@ static PetscErrorCode AddSolid(const EqmResult *result, EqmCamera camera, Row *r
    the target, which tells what corresponds, and with the ratio or the distance. */
 static PetscErrorCode AddRegistered(const EqmResult *result, EqmCamera camera, Row *row)
 {
-  EqmCamera of_b = result->dim == 2 ? EqmCameraFlat() : camera; /* the disk itself may stand for B */
-  const char *const pattern = result->dim == 2 ? "The pattern on the target" : "The pattern carried to B";
-  const char *const image = result->distance   ? "On B: the distance from A"
-                            : result->dim == 2 ? "A on the target, coloured by ratio"
-                                               : "A on B, coloured by ratio";
+  const PetscBool is_disk = (PetscBool)(!result->other_file[0] && result->target_dim == 2); /* it stands for B */
+  const char *const pattern = is_disk ? "The pattern on the target" : "The pattern carried to B";
+  const char *const image = result->distance ? "On B: the distance from A"
+                            : is_disk        ? "A on the target, coloured by ratio"
+                                             : "A on B, coloured by ratio";
+  EqmCamera of_b = is_disk ? EqmCameraFlat() : camera;
 
   PetscFunctionBegin;
   EqmCameraFit(&of_b, &row->surface, result->images);
