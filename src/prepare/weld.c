@@ -38,7 +38,10 @@ static PetscErrorCode JoinPoints(PetscInt n, Point *point, PetscReal distance, P
       const PetscReal x = point[j].x[0] - point[i].x[0], y = point[j].x[1] - point[i].x[1];
       const PetscReal z = point[j].x[2] - point[i].x[2];
 
-      if (x * x + y * y + z * z <= distance * distance) (void)EqmSetJoin(set, i, j);
+      if (x * x + y * y + z * z <= distance * distance)
+        (void)EqmSetJoin(set, i, j);
+      else if (distance == 0.)
+        break; /* equal points stand together, and many may have one first coordinate */
     }
   }
   for (PetscInt i = 0; i < n; i++) {
