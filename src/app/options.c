@@ -15,8 +15,22 @@ static const char *const late_names[] = {
     "options_view",      "random_seed",   "random_type",    "shared_tmp"};
 
 /* What its matrices, vectors and solvers ask for when they are made: all that begins so. */
-static const char *const late_prefixes[] = {"hessian_eps_", "hessian_st_", "mat_",        "linear_", "multigrid_",
-                                            "sf_",          "unfold_",     "vecscatter_", "vec_"};
+static const char *const late_prefixes[] = {"hessian_eps_",
+                                            "hessian_st_",
+                                            "mat_",
+                                            "linear_ksp_",
+                                            "linear_pc_",
+                                            "linear_mat_",
+                                            "linear_vec_",
+                                            "linear_mg_",
+                                            "linear_sub_",
+                                            "linear_redundant_",
+                                            "linear_fieldsplit_",
+                                            "multigrid_",
+                                            "sf_",
+                                            "unfold_",
+                                            "vecscatter_",
+                                            "vec_"};
 
 /* The options that were let through for their beginnings. */
 enum { MOST_TRUSTED = 32, LONGEST_NAME = 128 };

@@ -31,6 +31,7 @@ REFUSED = [
     (["conformal", "mesh.obj", "-o", "x.h5", "-fix_points", "nan,0,0,0,1,0,0,0,1"], ["-fix_points nan", "finite"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-max_iter", "5"], ["unknown option -max_iter", "did you mean -max_it?"]),
     (["disk", "mesh.obj", "-o", "x.h5", "--Max-Iter=5"], ["unknown option", "did you mean -max_it?"]),
+    (["disk", "mesh.obj", "-o", "x.h5", "-linear_solvr", "mumps"], ["unknown option -linear_solvr", "did you mean -linear_solver?"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-xyzzy"], ["unknown option -xyzzy;"]),
     (["disk", "mesh.obj", "-o", "folder"], ["-o folder is a folder"]),
     (["disk", "mesh.obj", "-o", "x.h5,folder"], ["-o folder is a folder"]),

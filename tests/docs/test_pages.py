@@ -15,7 +15,8 @@ sys.path.insert(0, os.path.join(HERE, "..", "support"))
 from program import Program  # noqa: E402
 
 # Options of other programs that the pages speak of, and PETSc's own.
-FOREIGN = {"n", "c", "t", "j", "R", "L", "S", "B", "q", "std", "np", "LE", "i", "options_file", "log_view", "h"}
+FOREIGN = {"n", "c", "t", "j", "R", "L", "S", "B", "q", "std", "np", "LE", "i", "options_file", "log_view", "h", "linear_ksp_type",
+           "linear_pc_type", "linear_mat_type"}
 
 
 def options_of(program, command):
