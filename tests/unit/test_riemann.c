@@ -132,7 +132,8 @@ static PetscErrorCode CapError(PetscInt n, PetscBool flat, PetscReal *error, Eqm
 
   PetscFunctionBegin;
   PetscCall(TestCapCreate(n, flat, &test));
-  PetscCall(TestSolve(test.mesh, "conformal", "-energy_rtol 0 -gradient_tol 1e-10", &solver));
+  /* Below about 4e-8 the objective, near 3, changes by its rounding only: whether a step is still found is chance. */
+  PetscCall(TestSolve(test.mesh, "conformal", "-energy_rtol 0 -gradient_tol 1e-6", &solver));
   PetscCall(PetscMalloc1(2 * test.mesh->num_local, &exact));
   for (PetscInt v = 0; v < test.mesh->num_local; v++) {
     const PetscReal *const p = test.mesh->position + 3 * v;
