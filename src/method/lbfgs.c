@@ -23,8 +23,8 @@ PetscErrorCode EqmLbfgsRestart(EqmMethod method, EqmIterate iterate)
   PetscFunctionBegin;
   PetscCall(EqmPairsForget(lb->pairs));
   PetscCall(EqmMetricRefresh(lb->metric, &iterate->place));
-  PetscCall(method->problem->objective->evaluate(method->problem, iterate, &iterate->place, iterate->image,
-                                                 &iterate->objective, lb->gradient));
+  PetscCall(
+      EqmProblemEvaluate(method->problem, iterate, &iterate->place, iterate->image, &iterate->objective, lb->gradient));
   PetscCall(VecNorm(lb->gradient, NORM_2, &iterate->gradient_norm));
   PetscFunctionReturn(0);
 }
@@ -87,8 +87,7 @@ static PetscErrorCode Backtrack(EqmMethod method, EqmIterate iterate, PetscReal 
     PetscBool in_order;
     PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, *t, lb->direction, &lb->trial));
     PetscCall(EqmDomainBoundaryInOrder(method->problem->domain, &lb->trial, &in_order));
-    PetscCall(method->problem->objective->evaluate(method->problem, iterate, &lb->trial, lb->image, energy,
-                                                   lb->trial_gradient));
+    PetscCall(EqmProblemEvaluate(method->problem, iterate, &lb->trial, lb->image, energy, lb->trial_gradient));
     const PetscReal change = *energy - iterate->objective;
     if (in_order && change <= 1e-4 * *t * slope) PetscFunctionReturn(0);
     *t = in_order ? PetscMax(.1 * *t, PetscMin(.5 * *t, -.5 * *t * *t * slope / (change - *t * slope))) : .5 * *t;
@@ -106,8 +105,7 @@ static PetscErrorCode TryStep(void *context, PetscReal t, PetscReal *value, Pets
 
   PetscFunctionBegin;
   PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, t, lb->direction, &lb->trial));
-  PetscCall(
-      method->problem->objective->evaluate(method->problem, iterate, &lb->trial, lb->image, value, lb->trial_gradient));
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &lb->trial, lb->image, value, lb->trial_gradient));
   PetscCall(VecDot(lb->trial_gradient, lb->direction, slope));
   PetscFunctionReturn(0);
 }
@@ -199,6 +197,7 @@ PetscErrorCode EqmMethodCreateLbfgs(EqmMethod method)
   lb->refresh = lb->memory = 10;
   method->data = lb;
   method->purpose = "limited-memory quasi-Newton steps in the Laplacian metric: scalar factorisations only";
+  method->takes_terms = PETSC_TRUE;
   method->ops =
       (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);

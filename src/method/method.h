@@ -9,6 +9,7 @@
 #include "problem/metric.h"
 #include "problem/objective.h"
 #include "problem/state.h"
+#include "problem/term.h"
 
 /* What a step came to. */
 typedef enum {
@@ -37,8 +38,9 @@ struct _p_EqmMethod {
   char name[32];
   const char *purpose; /* one line for people */
   EqmMethodOps ops;
-  EqmProblem problem; /* NULL before EqmMethodSetUp */
-  EqmIterate iterate; /* the one that is worked on, for callbacks */
+  EqmProblem problem;    /* NULL before EqmMethodSetUp */
+  EqmIterate iterate;    /* the one that is worked on, for callbacks */
+  PetscBool takes_terms; /* it minimises EqmProblemEvaluate, whatever the objective consists of */
   PetscBool takes_landmarks, is_set_up;
   void *data;                    /* the method's own: settings and work space */
   char message[EQM_MESSAGE_MAX]; /* why there is no further step; empty: nothing special */

@@ -33,8 +33,8 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(VecDuplicate(ncg->gradient, &ncg->trial_gradient));
   PetscCall(EqmPlaceCreate(method->problem->domain, &ncg->trial));
   PetscCall(EqmMetricRefresh(ncg->metric, &iterate->place));
-  PetscCall(method->problem->objective->evaluate(method->problem, iterate, &iterate->place, iterate->image,
-                                                 &iterate->objective, ncg->gradient));
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &iterate->place, iterate->image, &iterate->objective,
+                               ncg->gradient));
   PetscCall(VecNorm(ncg->gradient, NORM_2, &iterate->gradient_norm));
   PetscCall(EqmMetricApply(ncg->metric, &iterate->place, ncg->gradient, ncg->preconditioned));
   PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
@@ -68,7 +68,7 @@ static PetscErrorCode TryStep(EqmMethod method, EqmIterate iterate, PetscReal al
 
   PetscFunctionBegin;
   PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, alpha, ncg->direction, &ncg->trial));
-  PetscCall(method->problem->objective->evaluate(method->problem, iterate, &ncg->trial, ncg->image, energy, NULL));
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &ncg->trial, ncg->image, energy, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -96,8 +96,7 @@ static PetscErrorCode TryGradient(EqmMethod method, EqmIterate iterate, PetscRea
 
   PetscFunctionBegin;
   PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, alpha, ncg->direction, &ncg->trial));
-  PetscCall(method->problem->objective->evaluate(method->problem, iterate, &ncg->trial, ncg->image, energy,
-                                                 ncg->trial_gradient));
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &ncg->trial, ncg->image, energy, ncg->trial_gradient));
   PetscFunctionReturn(0);
 }
 
@@ -222,6 +221,7 @@ PetscErrorCode EqmMethodCreateNcg(EqmMethod method)
   ncg->guard = PETSC_TRUE;
   method->data = ncg;
   method->purpose = "preconditioned nonlinear conjugate gradients (000 Algorithm 1)";
+  method->takes_terms = PETSC_TRUE;
   method->ops =
       (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);

@@ -21,8 +21,8 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(PetscMalloc1(method->problem->mesh->num_local_cells, &rgd->image));
   PetscCall(EqmDomainCreateVec(method->problem->domain, &rgd->gradient));
   PetscCall(VecDuplicate(rgd->gradient, &rgd->direction));
-  PetscCall(method->problem->objective->evaluate(method->problem, iterate, &iterate->place, iterate->image,
-                                                 &iterate->objective, rgd->gradient));
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &iterate->place, iterate->image, &iterate->objective,
+                               rgd->gradient));
   PetscCall(VecNorm(rgd->gradient, NORM_2, &iterate->gradient_norm));
   PetscFunctionReturn(0);
 }
@@ -49,7 +49,7 @@ static PetscErrorCode Phi(void *context, PetscReal alpha, PetscReal *value)
 
   PetscFunctionBegin;
   PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, alpha, rgd->direction, &rgd->trial));
-  PetscCall(method->problem->objective->evaluate(method->problem, iterate, &rgd->trial, rgd->image, &energy, NULL));
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &rgd->trial, rgd->image, &energy, NULL));
   *value = energy - iterate->objective;
   PetscFunctionReturn(0);
 }
@@ -110,8 +110,8 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   *outcome = EQM_STEP_STALLED;
   if (alpha == 0.) PetscFunctionReturn(0);
   PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, alpha, rgd->direction, &iterate->place));
-  PetscCall(method->problem->objective->evaluate(method->problem, iterate, &iterate->place, iterate->image,
-                                                 &iterate->objective, rgd->gradient));
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &iterate->place, iterate->image, &iterate->objective,
+                               rgd->gradient));
   PetscCall(EqmIterateUpdateTotals(method->problem, iterate));
   PetscCall(VecNorm(rgd->gradient, NORM_2, &iterate->gradient_norm));
   iterate->step_length = alpha;
@@ -137,6 +137,7 @@ PetscErrorCode EqmMethodCreateRgd(EqmMethod method)
   PetscCall(PetscNew(&rgd));
   method->data = rgd;
   method->purpose = "Riemannian gradient descent (001 Algorithm 1)";
+  method->takes_terms = PETSC_TRUE;
   method->ops = (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .reset = Reset};
   PetscFunctionReturn(0);
 }

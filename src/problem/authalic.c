@@ -1,6 +1,5 @@
 /* The objectives of the area- and volume-preserving maps. */
 #include "problem/objective.h"
-#include "problem/barrier.h"
 
 PetscErrorCode EqmSumMeasures(EqmProblem problem, EqmIterate iterate)
 {
@@ -15,13 +14,11 @@ PetscErrorCode EqmSumMeasures(EqmProblem problem, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
-/* With the barrier against folds, while there is one. */
 static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, const EqmPlace *place, PetscReal *image,
                                PetscReal *value, Vec gradient)
 {
   PetscFunctionBegin;
   PetscCall(EqmAuthalicEnergy(problem->domain, place, image, value, gradient));
-  if (problem->barrier) PetscCall(EqmBarrierAdd(problem, place, image, value, gradient));
   PetscFunctionReturn(0);
 }
 
@@ -41,5 +38,9 @@ static PetscErrorCode StretchMetric(EqmProblem problem, const EqmPlace *place, P
 }
 
 /* A poor map has ratios off by half, root mean square: that is none of equal areas. */
-const EqmObjective EqmObjectiveAuthalic = {
-    .sum = EqmSumMeasures, .poor_energy = .25, .evaluate = Evaluate, .metric = StretchMetric, .inverse_scale = .5};
+const EqmObjective EqmObjectiveAuthalic = {.name = "authalic",
+                                           .sum = EqmSumMeasures,
+                                           .poor_energy = .25,
+                                           .evaluate = Evaluate,
+                                           .metric = StretchMetric,
+                                           .inverse_scale = .5};

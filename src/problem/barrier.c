@@ -56,30 +56,6 @@ static PetscErrorCode FindFacets(EqmBarrier barrier, EqmMesh mesh)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmBarrierCreate(EqmProblem problem, const EqmPlace *place, EqmBarrier *out)
-{
-  const EqmMesh mesh = problem->mesh;
-  const PetscInt n = mesh->num_local_cells;
-  EqmBarrier barrier;
-
-  PetscFunctionBegin;
-  PetscCall(PetscNew(&barrier));
-  barrier->total = problem->domain->target_measure;
-  PetscCall(PetscMalloc3(mesh->num_boundary_facets, &barrier->share, mesh->num_boundary_facets, &barrier->counts, 4 * n,
-                         &barrier->facet_of));
-  PetscCall(PetscMalloc5(6 * n, &barrier->edge, 6 * n, &barrier->flow, n, &barrier->slope, 3 * mesh->num_owned,
-                         &barrier->ambient, 3 * mesh->num_owned, &barrier->part));
-  PetscCall(MeasureFacets(barrier, mesh));
-  PetscCall(FindFacets(barrier, mesh));
-  PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_COTANGENT, place, barrier->edge));
-  for (PetscInt c = 0; c < n; c++) {
-    const PetscReal length = PetscPowReal(mesh->weight[c] * barrier->total / mesh->cell_measure[c], 1. / 3.);
-    for (PetscInt e = 0; e < 6; e++) barrier->edge[6 * c + e] /= mesh->cell_measure[c] * PetscSqr(length);
-  }
-  *out = barrier;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode EqmBarrierDestroy(EqmBarrier *barrier)
 {
   PetscFunctionBegin;
@@ -184,6 +160,40 @@ PetscErrorCode EqmBarrierAdd(EqmProblem problem, const EqmPlace *place, const Pe
   PetscCall(EqmDomainProject(problem->domain, place, barrier->ambient, part));
   PetscCall(VecAXPY(gradient, 1., part));
   PetscCall(VecDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddTerm(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image,
+                              PetscReal *value, Vec gradient)
+{
+  PetscFunctionBegin;
+  (void)term;
+  PetscCall(EqmBarrierAdd(problem, place, image, value, gradient));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmBarrierCreate(EqmProblem problem, const EqmPlace *place, EqmBarrier *out)
+{
+  const EqmMesh mesh = problem->mesh;
+  const PetscInt n = mesh->num_local_cells;
+  EqmBarrier barrier;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&barrier));
+  barrier->term = (struct _p_EqmTerm){.name = "barrier", .weight = 1., .add = AddTerm};
+  barrier->total = problem->domain->target_measure;
+  PetscCall(PetscMalloc3(mesh->num_boundary_facets, &barrier->share, mesh->num_boundary_facets, &barrier->counts, 4 * n,
+                         &barrier->facet_of));
+  PetscCall(PetscMalloc5(6 * n, &barrier->edge, 6 * n, &barrier->flow, n, &barrier->slope, 3 * mesh->num_owned,
+                         &barrier->ambient, 3 * mesh->num_owned, &barrier->part));
+  PetscCall(MeasureFacets(barrier, mesh));
+  PetscCall(FindFacets(barrier, mesh));
+  PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_COTANGENT, place, barrier->edge));
+  for (PetscInt c = 0; c < n; c++) {
+    const PetscReal length = PetscPowReal(mesh->weight[c] * barrier->total / mesh->cell_measure[c], 1. / 3.);
+    for (PetscInt e = 0; e < 6; e++) barrier->edge[6 * c + e] /= mesh->cell_measure[c] * PetscSqr(length);
+  }
+  *out = barrier;
   PetscFunctionReturn(0);
 }
 

@@ -3,9 +3,11 @@
 #define EQM_BARRIER_H
 
 #include "problem/problem.h"
+#include "problem/term.h"
 #include "energy/cellframe.h"
 
 struct _p_EqmBarrier {
+  struct _p_EqmTerm term;         /* without a weight of its own */
   PetscReal weight, shape_weight; /* lambda and sigma */
   PetscReal epsilon;              /* how soft it is; never 0, what is next to nothing makes it a wall */
   PetscReal total;                /* the volume that ratios refer to, held */

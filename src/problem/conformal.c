@@ -102,7 +102,8 @@ static PetscErrorCode StepToFold(EqmProblem problem, EqmIterate iterate, Vec dir
   PetscFunctionReturn(0);
 }
 
-const EqmObjective EqmObjectiveConformal = {.sum = SumDirichlet,
+const EqmObjective EqmObjectiveConformal = {.name = "conformal",
+                                            .sum = SumDirichlet,
                                             .evaluate = Evaluate,
                                             .metric = CotangentMetric,
                                             .fixed_metric = PETSC_TRUE,

@@ -6,6 +6,8 @@
 #include "problem/problem.h"
 
 struct EqmObjective {
+  const char *name;
+  PetscBool planar_only; /* for maps to the disk and the square */
   /* Totals from place and image: areas or volumes, folds, the energy. Collective. */
   PetscErrorCode (*sum)(EqmProblem, EqmIterate);
   PetscReal poor_energy; /* a stagnating map with more than this, per target measure, is no success; 0: any may be */
@@ -24,7 +26,12 @@ struct EqmObjective {
   PetscErrorCode (*longest_step)(EqmProblem, EqmIterate, Vec direction, PetscReal *t);
 };
 
-PETSC_INTERN const EqmObjective EqmObjectiveAuthalic, EqmObjectiveConformal;
+PETSC_INTERN const EqmObjective EqmObjectiveAuthalic, EqmObjectiveConformal, EqmObjectiveSymmetricDirichlet;
+
+/* Make an objective known; it must outlive the program's use of it (objectives.c). Not collective. */
+PETSC_EXTERN PetscErrorCode EqmObjectiveRegister(const EqmObjective *objective);
+/* Errors: EQM_ERR_USAGE (no such objective). Collective. */
+PETSC_INTERN PetscErrorCode EqmObjectiveFind(MPI_Comm comm, const char *name, const EqmObjective **objective);
 
 /* Totals of the areas or volumes: the normalised authalic or isovolumetric energy. Collective. */
 PETSC_INTERN PetscErrorCode EqmSumMeasures(EqmProblem problem, EqmIterate iterate);

@@ -1,5 +1,6 @@
 #include "problem/problem.h"
 #include "problem/barrier.h"
+#include "problem/term.h"
 #include <stdarg.h>
 
 PetscErrorCode EqmProblemCreate(EqmDomain domain, const EqmObjective *objective, EqmProblem *out)
@@ -29,6 +30,7 @@ PetscErrorCode EqmProblemDestroy(EqmProblem *problem)
   PetscCall(PetscFree(p->angle_weights));
   PetscCall(PetscFree(p->vertex_mass));
   PetscCall(EqmLandmarksReset(&p->landmarks));
+  PetscCall(EqmProblemDestroyTerms(p));
   PetscCall(EqmBarrierDestroy(&p->barrier));
   PetscCall(EqmDomainDestroy(&p->domain));
   PetscCall(PetscFree(*problem));

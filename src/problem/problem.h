@@ -36,7 +36,8 @@ struct _p_EqmProblem {
   const EqmObjective *objective;
   EqmOrdering ordering;
   EqmLandmarks landmarks;
-  EqmBarrier barrier; /* ball: added to the energy while folds are mended; else NULL */
+  struct _p_EqmTerm *terms; /* added to the objective (term.h); NULL: none */
+  EqmBarrier barrier;       /* ball: one of these terms while folds are mended, known to the metric; else NULL */
 
   EqmLinear scalar; /* one unknown per vertex: Laplacians of all kinds; NULL until the first need */
   unsigned char *scalar_count;

@@ -114,6 +114,10 @@ static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOption
   PetscCall(EqmFormulationMethodNames(solver->target, NULL, methods + 15, sizeof(methods) - 15));
   PetscCall(PetscOptionsString("-method", methods, "EqmSolverSetFromOptions", set->method, set->method,
                                sizeof(set->method), NULL));
+  PetscCall(PetscOptionsString("-objective",
+                               "what is minimised: authalic, symmetric-dirichlet (disk, square); else the target's own",
+                               "EqmSolverSetFromOptions", set->objective, set->objective, sizeof(set->objective),
+                               NULL));
   PetscCall(EqmStartSetFromOptions(solver->formulation->starts, &set->start, PetscOptionsObject));
   PetscCall(ReadTolerances(set, PetscOptionsObject));
   PetscCall(PetscOptionsReal("-balance",
@@ -186,6 +190,47 @@ static PetscErrorCode ListOtherStarts(EqmSolver solver, PetscOptionItems *PetscO
   PetscFunctionReturn(0);
 }
 
+/* The formulation's objective, or the one that the user wants. */
+static PetscErrorCode FindObjective(EqmSolver solver)
+{
+  const EqmSolverSettings *const set = &solver->settings;
+  const PetscBool planar = (PetscBool)(solver->formulation->starts == EQM_STARTS_PLANE);
+
+  PetscFunctionBegin;
+  solver->objective = solver->formulation->objective;
+  if (!set->objective[0]) PetscFunctionReturn(0);
+  PetscCall(EqmObjectiveFind(solver->comm, set->objective, &solver->objective));
+  if (solver->objective->planar_only && !planar)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-objective %s is for the disk and the square", set->objective);
+  PetscFunctionReturn(0);
+}
+
+/* Another objective than the target's own asks for a method that minimises any. */
+static const char *MethodName(EqmSolver solver)
+{
+  const char *const name = solver->settings.method;
+
+  return solver->objective != solver->formulation->objective && !strcmp(name, "auto") ? "lbfgs" : name;
+}
+
+/* Can the method minimise what is wanted? */
+static PetscErrorCode CheckObjective(EqmSolver solver)
+{
+  const EqmSolverSettings *const set = &solver->settings;
+  const PetscBool surface = (PetscBool)(solver->formulation->starts != EQM_STARTS_BALL);
+  const PetscBool takes_terms = solver->method->takes_terms, takes_balance = solver->formulation->takes_balance;
+
+  PetscFunctionBegin;
+  if (solver->objective != solver->formulation->objective && !takes_terms)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s does not minimise -objective %s; take lbfgs, ncg or rgd",
+            solver->defaults.name, solver->objective->name);
+  if (set->balance > 0. && !surface) EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for the ball");
+  if (set->balance > 0. && !takes_terms && (!takes_balance || strcmp(solver->defaults.method, "lm")))
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for -method %s on the %s%s", solver->defaults.name,
+            solver->formulation->domain, takes_balance || surface ? "; take lbfgs, ncg or rgd" : "");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmSolverSettle(EqmSolver solver)
 {
   EqmSolverSettings *const set = &solver->settings;
@@ -193,10 +238,9 @@ PetscErrorCode EqmSolverSettle(EqmSolver solver)
 
   PetscFunctionBegin;
   PetscCall(Check(solver->comm, set));
-  if (set->balance > 0. && !formulation->takes_balance)
-    EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for the %s", formulation->domain);
+  PetscCall(FindObjective(solver));
   if (!solver->method) {
-    PetscCall(EqmFormulationFindMethod(solver->comm, formulation, set->method, &solver->defaults));
+    PetscCall(EqmFormulationFindMethod(solver->comm, formulation, MethodName(solver), &solver->defaults));
     PetscCall(CreateMethod(solver, &solver->defaults, NULL, &solver->method));
   }
   if (!set->start.name[0]) PetscCall(PetscStrncpy(set->start.name, solver->defaults.start, sizeof(set->start.name)));
@@ -204,6 +248,7 @@ PetscErrorCode EqmSolverSettle(EqmSolver solver)
   if (set->ratio_tol < 0.) set->ratio_tol = set->energy_rtol == 0. ? 0. : solver->defaults.ratio_tol;
   if (set->energy_rtol < 0.) set->energy_rtol = solver->defaults.energy_rtol;
   if (set->gradient_tol < 0.) set->gradient_tol = solver->defaults.gradient_tol;
+  PetscCall(CheckObjective(solver));
   PetscCall(EqmStartFind(solver->comm, formulation->starts, formulation->domain, set->start.name, &solver->start));
   PetscFunctionReturn(0);
 }
@@ -211,8 +256,9 @@ PetscErrorCode EqmSolverSettle(EqmSolver solver)
 PetscErrorCode EqmSolverCheckLandmarkSupport(EqmSolver solver)
 {
   PetscFunctionBegin;
-  if (!solver->method->takes_landmarks)
-    EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s cannot draw landmarks together; take lm", solver->defaults.name);
+  if (!solver->method->takes_landmarks && !solver->method->takes_terms)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s cannot draw landmarks together; take lm, or lbfgs, ncg or rgd",
+            solver->defaults.name);
   PetscFunctionReturn(0);
 }
 
@@ -238,7 +284,8 @@ static PetscErrorCode ReadOwn(EqmSolver solver, PetscOptionItems *PetscOptionsOb
   }
   if (!solver->mesh) PetscFunctionReturn(0);
   PetscCall(EqmMethodDestroy(&solver->method));
-  PetscCall(EqmFormulationFindMethod(solver->comm, solver->formulation, set->method, &solver->defaults));
+  PetscCall(FindObjective(solver));
+  PetscCall(EqmFormulationFindMethod(solver->comm, solver->formulation, MethodName(solver), &solver->defaults));
   PetscCall(CreateMethod(solver, &solver->defaults, PetscOptionsObject, &solver->method));
   PetscFunctionReturn(0);
 }

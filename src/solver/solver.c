@@ -57,12 +57,32 @@ static PetscErrorCode CreateProblem(EqmSolver solver)
   PetscCall(EqmDomainCreate(solver->mesh,
                             solver->defaults.domain ? solver->defaults.domain : solver->formulation->domain, &options,
                             &domain));
-  PetscCall(EqmProblemCreate(domain, solver->formulation->objective, &solver->problem));
+  PetscCall(EqmProblemCreate(domain, solver->objective, &solver->problem));
   PetscCall(PetscStrncpy(solver->problem->prefix, solver->prefix, sizeof(solver->problem->prefix)));
   solver->problem->notify = EqmSolverNotify;
   solver->problem->stop_requested = StopRequested;
   solver->problem->context = solver;
   PetscCall(EqmIterateCreate(solver->problem, &solver->iterate));
+  PetscFunctionReturn(0);
+}
+
+/* What the objective has beside its leading term, for methods that minimise whatever it consists of; lm has terms of
+   its own. */
+static PetscErrorCode AddTerms(EqmSolver solver)
+{
+  const EqmProblem problem = solver->problem;
+  EqmTerm term;
+
+  PetscFunctionBegin;
+  if (!solver->method->takes_terms) PetscFunctionReturn(0);
+  if (solver->settings.balance > 0.) {
+    PetscCall(EqmTermCreateAngle(problem, solver->settings.balance, &term));
+    PetscCall(EqmProblemAddTerm(problem, term));
+  }
+  if (problem->landmarks.num_total > 0) {
+    PetscCall(EqmTermCreateLandmarks(problem, problem->landmarks.lambda, &term));
+    PetscCall(EqmProblemAddTerm(problem, term));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -142,6 +162,7 @@ PetscErrorCode EqmSolverSetUp(EqmSolver solver)
   PetscCall(MakeFirstMap(solver));
   if (solver->problem->landmarks.num_total > 0) PetscCall(EqmSolverCheckLandmarkSupport(solver));
   PetscCall(EqmLandmarksSetUp(&solver->problem->landmarks, solver->problem->domain));
+  PetscCall(AddTerms(solver));
   PetscCall(EqmIterateUpdate(solver->problem, solver->iterate));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_START));
   PetscFunctionReturn(0);

@@ -10,6 +10,7 @@
 /* The common settings; a negative number leaves the decision to the method. */
 typedef struct {
   char method[32];
+  char objective[32]; /* empty: the formulation's */
   EqmStartOptions start;
   PetscInt max_it, max_factorizations;
   PetscReal energy_rtol, ratio_tol, energy_target, gradient_tol, wall_time, balance;
@@ -29,6 +30,7 @@ struct _p_EqmSolver {
   char target[16], prefix[32];
   EqmSolverSettings settings;
   const EqmFormulation *formulation;
+  const EqmObjective *objective;
   EqmMethodDefaults defaults; /* of the method for the formulation */
   const EqmStartType *start;
   EqmMethod method; /* NULL until the settings are settled */

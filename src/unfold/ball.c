@@ -92,6 +92,7 @@ PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 
   PetscCall(EqmPlaceCreate(problem->domain, &best.place));
   PetscCall(EqmBarrierCreate(problem, &iterate->place, &barrier));
   problem->barrier = barrier;
+  PetscCall(EqmProblemAddTerm(problem, &barrier->term));
   barrier->weight = first_weight;
   PetscCall(Compare(problem, iterate, &best, &folds, &least));
   barrier->epsilon = PetscMax(1., -.2 * least);
@@ -108,6 +109,7 @@ PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 
     PetscCall(Compare(problem, iterate, &best, &folds, &least));
   }
   PetscCall(EqmMethodDestroy(&lbfgs));
+  PetscCall(EqmProblemRemoveTerm(problem, &barrier->term));
   PetscCall(EqmBarrierDestroy(&problem->barrier));
   PetscCall(EqmPlaceCopy(problem->domain, &best.place, &iterate->place));
   PetscCall(EqmPlaceDestroy(&best.place));

@@ -1,0 +1,41 @@
+/* Vertices that are drawn to places: sum |x(v_i) - q_i|^2 (000 (46), 001 section 6.6). */
+#include "problem/term.h"
+
+static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image,
+                          PetscReal *value, Vec gradient)
+{
+  const EqmLandmarks *const landmarks = &problem->landmarks;
+  const EqmDomain domain = problem->domain;
+  PetscReal squares, *ambient;
+  Vec part;
+
+  PetscFunctionBegin;
+  (void)image;
+  PetscCall(EqmLandmarksSquares(landmarks, domain, place->x, NULL, &squares));
+  *value += term->weight * squares;
+  if (!gradient) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(domain->dim * problem->mesh->num_owned, &ambient));
+  PetscCall(VecDuplicate(gradient, &part));
+  EqmLandmarksAddGradient(landmarks, domain, place->x, 2. * term->weight, ambient);
+  PetscCall(EqmDomainProject(domain, place, ambient, part));
+  PetscCall(VecAXPY(gradient, 1., part));
+  PetscCall(VecDestroy(&part));
+  PetscCall(PetscFree(ambient));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(EqmTerm term)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(term));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmTermCreateLandmarks(EqmProblem problem, PetscReal weight, EqmTerm *term)
+{
+  PetscFunctionBegin;
+  (void)problem;
+  PetscCall(PetscNew(term));
+  **term = (struct _p_EqmTerm){.name = "landmarks", .weight = weight, .add = Add, .destroy = Destroy};
+  PetscFunctionReturn(0);
+}
