@@ -164,6 +164,16 @@ static void StartWithoutDaemon(void)
   (void)setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
 }
 
+/* Threads that wait are to sleep, not to spin: on a busy machine spinning takes the cores from whoever works. The
+   OpenMP library reads this when it is loaded, so the program starts once more with it, unless the user has decided;
+   where it cannot, it goes on as it is. */
+static void WaitPassively(char **argv)
+{
+  if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
+  if (setenv("OMP_WAIT_POLICY", "passive", 0)) return;
+  (void)execv("/proc/self/exe", argv);
+}
+
 int main(int argc, char **argv)
 {
   EqmCommandLine line = {0};
@@ -176,6 +186,7 @@ int main(int argc, char **argv)
 
   if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return EQM_STATUS_INTERNAL;
   if (line.version || !line.command) return EqmIntroduce(&line, rank);
+  WaitPassively(argv);
   if (!launched) StartWithoutDaemon();
   argc = num_options;
   argv = options;

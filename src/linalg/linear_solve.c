@@ -135,6 +135,10 @@ PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscRea
 
   PetscFunctionBegin;
   PetscCall(EqmLinearTrySolve(linear, num_rhs, b, x, &success));
+  if (!success && linear->kind == EQM_SOLVER_PETSC)
+    EqmFail(linear->mesh->comm, EQM_ERR_USAGE,
+            "the solver that the options -linear_... describe did not converge; give it more iterations "
+            "(-linear_ksp_max_it) or another preconditioner, or leave -linear_solver to the program");
   PetscCheck(
       success, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
       "the iteration of -linear_solver %s did not converge: the matrix may not be definite; try -linear_solver %s",

@@ -53,16 +53,6 @@ PetscErrorCode EqmCompose(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* Radius of the disk, sphere or ball that has the side's measure. Not collective. */
-PetscReal EqmSideRadius(const EqmRegistration r, const EqmSide *side)
-{
-  const PetscReal measure = side->map->distortion.mesh_measure;
-
-  if (r->kind == EQM_IMAGE_PLANE) return PetscSqrtReal(measure / PETSC_PI);
-  if (r->kind == EQM_IMAGE_SPHERE) return PetscSqrtReal(measure / (4. * PETSC_PI));
-  return PetscCbrtReal(.75 * measure / PETSC_PI);
-}
-
 /* Means of v and phi(v) over A, weighted by volume or area. */
 static PetscErrorCode Centroids(EqmRegistration r, PetscReal mean[6])
 {

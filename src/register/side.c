@@ -287,3 +287,13 @@ PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
+
+/* Radius of the disk, sphere or ball that has the side's measure. Not collective. */
+PetscReal EqmSideRadius(const EqmRegistration r, const EqmSide *side)
+{
+  const PetscReal measure = side->map->distortion.mesh_measure;
+
+  if (r->kind == EQM_IMAGE_PLANE) return PetscSqrtReal(measure / PETSC_PI);
+  if (r->kind == EQM_IMAGE_SPHERE) return PetscSqrtReal(measure / (4. * PETSC_PI));
+  return PetscCbrtReal(.75 * measure / PETSC_PI);
+}

@@ -94,9 +94,18 @@ PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop)
   PetscFunctionReturn(0);
 }
 
+/* Are the ratios one to half of the digits and more? No step can do better than that in a double's arithmetic. */
+static PetscBool IsExact(EqmSolver solver)
+{
+  const EqmImageTotals *const totals = &solver->iterate->totals;
+
+  return (PetscBool)(solver->problem->objective->poor_energy > 0. && totals->folds == 0 &&
+                     totals->energy <= PetscSqr(1e-11) * totals->total);
+}
+
 PetscErrorCode EqmJudgeEnd(EqmSolver solver, EqmStep outcome)
 {
-  const PetscBool converged = (PetscBool)(outcome == EQM_STEP_CONVERGED);
+  const PetscBool converged = (PetscBool)(outcome == EQM_STEP_CONVERGED || IsExact(solver));
   const char *const usual =
       converged ? "the next step would change the objective by rounding only"
                 : "no step decreases the objective any more: the limit of this method and this arithmetic";

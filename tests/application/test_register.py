@@ -257,7 +257,7 @@ def check_refused(program):
         (6, "numbers are wanted", *both, "-transfer", "text.csv"),
         (6, "missing.csv", *both, "-transfer", "missing.csv"),
         (2, "wants a mesh for B", "hills.obj", "target", *landmarks("flat"), "-transfer", "coordinates"),
-        (2, "cannot draw landmarks", *both, *landmarks("pair"), "-method", "lbfgs"),
+        (2, "cannot draw landmarks", *both, *landmarks("pair"), "-method", "fixed-point"),
         (2, "midpoints", *both, "-register_by", "midpoints"),
         (2, "midpoints", *both, "-register_by", "midpoints", *landmarks("flat")),
         (2, "-frames 1", *both, "-frames", 1),
