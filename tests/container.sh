@@ -33,7 +33,8 @@ inside() {
 
 mirror=$(awk '$1 == "deb" && $2 ~ /^http/ { print $2; exit }' /etc/apt/sources.list 2>/dev/null || true)
 [ -n "$mirror" ] || mirror=$(awk '$1 == "URIs:" { print $2; exit }' /etc/apt/sources.list.d/*.sources 2>/dev/null || true)
-echo "container: Debian 12 from ${mirror:=http://deb.debian.org/debian}"
+[ -n "$mirror" ] || { echo "container: this system names no Debian mirror; not run"; exit 77; }
+echo "container: Debian 12 from $mirror"
 debootstrap --variant=minbase bookworm "$folder/root" "$mirror" >"$folder/debootstrap.log" 2>&1 ||
   { tail -n 20 "$folder/debootstrap.log"; exit 1; }
 mount --bind /dev "$folder/root/dev"

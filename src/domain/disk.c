@@ -1,7 +1,7 @@
 /* The unit disk: the boundary on the circle, the rest free (000 (6), (7)). */
 #include "domain/domain_private.h"
 
-static PetscErrorCode PlaceOnCircle(EqmDomain domain, EqmPlace *place)
+PetscErrorCode EqmDomainPlaceOnCircle(EqmDomain domain, EqmPlace *place)
 {
   PetscFunctionBegin;
   for (PetscInt v = 0; v < domain->mesh->num_local; v++) {
@@ -21,7 +21,7 @@ PetscErrorCode EqmDomainCreateDisk(EqmMesh mesh, EqmDomain *domain)
   (*domain)->motion[1] = &EqmMotionCircle;
   (*domain)->target_measure = PETSC_PI;
   (*domain)->boundary_length = 2. * PETSC_PI;
-  (*domain)->place_boundary = PlaceOnCircle;
+  (*domain)->place_boundary = EqmDomainPlaceOnCircle;
   for (PetscInt v = 0; v < mesh->num_local; v++) (*domain)->kind[v] = mesh->on_boundary[v] ? 1 : 0;
   PetscCall(EqmDomainNumber(*domain));
   PetscFunctionReturn(0);

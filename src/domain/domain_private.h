@@ -16,4 +16,7 @@ PETSC_INTERN void EqmRetractNowhere(PetscInt dim, const PetscReal *x, const Pets
 /* held-disk, its angles from the file that the options name. Collective. */
 PETSC_INTERN PetscErrorCode EqmDomainReadHeldDisk(EqmMesh mesh, const EqmDomainOptions *options, EqmDomain *domain);
 
+/* Boundary vertices to the angles 2 pi arc_length of the unit circle (disk.c). Collective. */
+PETSC_INTERN PetscErrorCode EqmDomainPlaceOnCircle(EqmDomain domain, EqmPlace *place);
+
 #endif

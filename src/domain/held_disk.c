@@ -3,18 +3,6 @@
 #include "domain/domain_private.h"
 #include "format/table.h"
 
-/* `arc_length` holds angles over 2 pi. */
-static PetscErrorCode PlaceAtAngles(EqmDomain domain, EqmPlace *place)
-{
-  PetscFunctionBegin;
-  for (PetscInt v = 0; v < domain->mesh->num_local; v++) {
-    if (!domain->mesh->on_boundary[v]) continue;
-    place->x[2 * v] = PetscCosReal(2. * PETSC_PI * domain->arc_length[v]);
-    place->x[2 * v + 1] = PetscSinReal(2. * PETSC_PI * domain->arc_length[v]);
-  }
-  PetscFunctionReturn(0);
-}
-
 /* A boundary that turns back folds whatever is inside. */
 static PetscErrorCode CheckOrder(EqmDomain domain)
 {
@@ -23,7 +11,7 @@ static PetscErrorCode CheckOrder(EqmDomain domain)
 
   PetscFunctionBegin;
   PetscCall(EqmPlaceCreate(domain, &place));
-  PetscCall(PlaceAtAngles(domain, &place));
+  PetscCall(EqmDomainPlaceOnCircle(domain, &place));
   PetscCall(EqmDomainBoundaryInOrder(domain, &place, &in_order));
   PetscCall(EqmPlaceDestroy(&place));
   if (!in_order)
@@ -43,7 +31,7 @@ PetscErrorCode EqmDomainCreateHeldDisk(EqmMesh mesh, const PetscReal *angle, Eqm
   domain->motion[1] = &EqmMotionHeldOnCircle;
   domain->target_measure = PETSC_PI;
   domain->boundary_length = 2. * PETSC_PI;
-  domain->place_boundary = PlaceAtAngles;
+  domain->place_boundary = EqmDomainPlaceOnCircle; /* `arc_length` holds angles over 2 pi */
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     domain->kind[v] = mesh->on_boundary[v] ? 1 : 0;
     if (mesh->on_boundary[v]) domain->arc_length[v] = angle[v] / (2. * PETSC_PI);

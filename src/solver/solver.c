@@ -183,12 +183,32 @@ static PetscErrorCode SetUpMethod(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* A mesh whose vertices are all held has one map. */
+static PetscErrorCode IsSettled(EqmSolver solver, PetscBool *settled)
+{
+  PetscInt num_dofs;
+
+  PetscFunctionBegin;
+  PetscCall(MPIU_Allreduce(&solver->problem->domain->num_dofs, &num_dofs, 1, MPIU_INT, MPI_SUM, solver->comm));
+  *settled = (PetscBool)(num_dofs == 0);
+  if (!*settled) PetscFunctionReturn(0);
+  solver->status = EQM_STATUS_CONVERGED;
+  PetscCall(PetscStrncpy(solver->message, "every vertex is held: there is one map", sizeof(solver->message)));
+  solver->iterate->objective = solver->iterate->totals.energy;
+  solver->iterate->gradient_norm = -1.;
+  PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_BEGIN, ""));
+  PetscCall(EqmHistoryAddRow(solver));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Iterate(EqmSolver solver)
 {
   EqmIterate const iterate = solver->iterate;
   PetscBool stop = PETSC_FALSE;
 
   PetscFunctionBegin;
+  PetscCall(IsSettled(solver, &stop));
+  if (stop) PetscFunctionReturn(0);
   PetscCall(SetUpMethod(solver));
   if (!solver->checkpoints.finished) PetscCall(EqmJudgeIteration(solver, &stop));
   while (!stop && !solver->checkpoints.finished) {

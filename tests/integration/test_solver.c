@@ -51,6 +51,61 @@ static PetscErrorCode TestStops(const char *options, EqmStatus status, const cha
   PetscFunctionReturn(0);
 }
 
+/* A plain grid of nx x ny vertices, two triangles to a square, all diagonals one way: at two of its corners a triangle
+   has all its vertices on the boundary, and is flat in every map that takes them to one side. */
+static PetscErrorCode SolveGrid(PetscInt nx, PetscInt ny)
+{
+  PetscReal *points;
+  PetscInt *corners, num = 0;
+  EqmSoup soup;
+  TestMesh test;
+  EqmSolver solver;
+  const EqmImageTotals *totals;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(3 * nx * ny, &points, 6 * (nx - 1) * (ny - 1), &corners));
+  for (PetscInt k = 0; k < nx * ny; k++) {
+    points[3 * k] = (PetscReal)(k % nx);
+    points[3 * k + 1] = (PetscReal)(k / nx);
+    points[3 * k + 2] = 0.;
+  }
+  for (PetscInt j = 0; j + 1 < ny; j++) {
+    for (PetscInt i = 0; i + 1 < nx; i++) {
+      const PetscInt a = nx * j + i, cell[6] = {a, a + 1, a + nx + 1, a, a + nx + 1, a + nx};
+      for (PetscInt k = 0; k < 6; k++) corners[num++] = cell[k];
+    }
+  }
+  PetscCall(TestSoupFromArrays(PETSC_COMM_WORLD, nx * ny, points, 3, num / 3, corners, &soup));
+  PetscCall(TestMeshFromSoup(soup, &test));
+  PetscCall(TestSolve(test.mesh, "square", "", &solver));
+  PetscCall(EqmSolverGetTotals(solver, &totals));
+  CHECK(totals->folds == 0 && totals->energy < 1e-6, "grid of %d x %d: energy %g, %d folds", (int)nx, (int)ny,
+        (double)totals->energy, (int)totals->folds);
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscCall(PetscFree2(points, corners));
+  PetscFunctionReturn(0);
+}
+
+/* Calls out of order are refused with the order that is right, not with a crash. */
+static PetscErrorCode TestOrder(EqmMesh mesh)
+{
+  EqmSolver solver;
+  const EqmImageTotals *totals;
+  EqmDomain domain;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverCreate(mesh, "disk", &solver));
+  CHECK_FAILS(PETSC_ERR_ORDER, EqmSolverGetTotals(solver, &totals));
+  CHECK_FAILS(PETSC_ERR_ORDER, EqmSolverGetDomain(solver, &domain));
+  PetscCall(EqmSolverSetTolerances(solver, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 1));
+  PetscCall(EqmSolverSolve(solver)); /* without options */
+  CHECK_FAILS(PETSC_ERR_ORDER, EqmSolverSetMethod(solver, "ncg"));
+  CHECK_FAILS(PETSC_ERR_ORDER, EqmSolverSetFromOptions(solver));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   TestMesh test;
@@ -84,7 +139,12 @@ int main(int argc, char **argv)
       TestStops("-method lm -max_factorizations 2 -energy_rtol 0", EQM_STATUS_NOT_CONVERGED, "-max_factorizations"));
   PetscCall(TestStops("-method ncg -wall_time 1e-6 -energy_rtol 0", EQM_STATUS_NOT_CONVERGED, "-wall_time"));
 
+  PetscCall(SolveGrid(5, 3));
+  PetscCall(SolveGrid(9, 5));
+  PetscCall(SolveGrid(2, 2)); /* every vertex a corner */
+
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 100, 1, &test));
+  PetscCall(TestOrder(test.mesh));
   PetscCall(TestRefused(test.mesh, "disk", "-method nosuch"));
   PetscCall(TestRefused(test.mesh, "disk", "-start nosuch"));
   PetscCall(TestRefused(test.mesh, "disk", "-max_it -5"));
