@@ -166,12 +166,17 @@ static void StartWithoutDaemon(void)
 
 /* Threads that wait are to sleep, not to spin: on a busy machine spinning takes the cores from whoever works. The
    OpenMP library reads this when it is loaded, so the program starts once more with it, unless the user has decided;
-   where it cannot, it goes on as it is. */
+   where it cannot, it goes on as it is. Under its own path: as /proc/self/exe its name would be exe to ps and pkill. */
 static void WaitPassively(char **argv)
 {
+  char path[PETSC_MAX_PATH_LEN];
+
   if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
   if (setenv("OMP_WAIT_POLICY", "passive", 0)) return;
-  (void)execv("/proc/self/exe", argv);
+  const ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - 1);
+  if (length <= 0) return;
+  path[length] = '\0';
+  (void)execv(path, argv);
 }
 
 int main(int argc, char **argv)
