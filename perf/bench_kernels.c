@@ -9,6 +9,7 @@
    Before every timed repetition the triad's arrays are swept, so that nothing of the mesh is left in a large cache: a
    mesh of a million vertices fits in the last cache of a server. The best repetition counts. */
 #include <equimap.h>
+#include "mesh/mesh_private.h"
 #include "linalg/linalg.h"
 #include <cjson/cJSON.h>
 #include <omp.h>

@@ -49,27 +49,6 @@ typedef struct {
 
 /* Where each vertex of a mesh may go, and how it gets there. */
 typedef struct _p_EqmDomain *EqmDomain;
-/* The fields of a domain; read-only after creation. */
-struct _p_EqmDomain {
-  EqmMesh mesh;
-  const char *name;
-  EqmMeasureKind measure; /* of image cells */
-  PetscBool
-      curved_image; /* image cells can fold without a change of sign of their measure: look at EQM_MEASURE_HALF_DET */
-  PetscBool spherical_coordinates;                /* vertices on the sphere move by their angles */
-  PetscInt dim;                                   /* coordinates of a place: 2 or 3 */
-  const EqmVertexMotion *motion[EQM_MAX_MOTIONS]; /* the kinds of vertices, NULL behind the last */
-  unsigned char *kind;                            /* per local vertex: its place in `motion` */
-  PetscInt *dof_start;          /* per local vertex: place of its first degree of freedom in the global vector */
-  unsigned char *dof_count;     /* per local vertex */
-  PetscInt num_dofs, dof_first; /* owned degrees of freedom, and the global number of the first */
-  PetscBool has_frames;         /* some kind stores three reals per vertex */
-  PetscReal target_measure;     /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
-  PetscReal boundary_length;    /* of the target: 2 pi, 4 */
-  PetscReal corner_arc[4];      /* square: arc lengths of the corners */
-  PetscErrorCode (*place_boundary)(EqmDomain, EqmPlace *);
-  PetscReal *arc_length; /* per local vertex: arc length along the boundary loop in [0, 1), -1 inside (disk, square) */
-};
 
 /* What steers the creation of a domain; each takes what concerns it. */
 typedef struct {
@@ -148,10 +127,7 @@ PETSC_EXTERN PetscErrorCode EqmPlaceCenter(EqmDomain domain, const PetscReal *ma
 /* The frame of local vertex v at `place`: column k of the dim x count matrix is frame[dim k .. dim k + dim - 1]. */
 PETSC_EXTERN PetscInt EqmDomainFrame(EqmDomain domain, const EqmPlace *place, PetscInt v, PetscReal frame[9]);
 
-/* The kind of a local vertex. Not collective. */
-static inline const EqmVertexMotion *EqmDomainMotion(EqmDomain domain, PetscInt v)
-{
-  return domain->motion[domain->kind[v]];
-}
+/* EqmDomainGetDimension - coordinates of a place: 2 or 3. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainGetDimension(EqmDomain domain, PetscInt *dim);
 
 #endif

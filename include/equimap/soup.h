@@ -20,23 +20,20 @@ typedef struct {
   char *metadata;           /* what the file says beside the mesh, lines "key<tab>value", or NULL; PetscMalloc'ed */
 } EqmSerialMesh;
 
-/* A slab of the file's mesh on each rank. Public fields, read-only after creation. */
+/* A slab of the file's mesh on each rank. */
 typedef struct _p_EqmSoup *EqmSoup;
-struct _p_EqmSoup {
-  MPI_Comm comm;
-  PetscInt cell_size;                /* 3 triangles, 4 tetrahedra */
-  PetscInt num_vertices, num_cells;  /* global counts */
-  PetscInt vertex_start, vertex_end; /* this rank's slab of vertices, input numbering */
-  PetscInt cell_start, cell_end;     /* this rank's slab of cells, input numbering */
-  PetscReal *vertices;               /* 3 * (vertex_end - vertex_start) */
-  PetscInt *cells;                   /* cell_size * (cell_end - cell_start), input vertex numbers */
-  PetscReal *density;                /* per cell of the slab, positive, or NULL: all one */
-  PetscReal *edge_length; /* per cell of the slab and corner, of the edge opposite; NULL: edges are straight in space */
-  char file[PETSC_MAX_PATH_LEN]; /* where it came from */
-  char note[EQM_SOUP_NOTE];      /* what its reader changed, in plain words; "": nothing */
-  char *metadata;                /* what the file says beside the mesh, the same on every rank, or NULL */
-  PetscInt64 checksum;           /* CRC-32 of vertices and cells in input order, rank-independent */
-};
+
+/* What a soup holds; arrays belong to it. Any pointer may be NULL. Not collective. */
+/* EqmSoupGetSizes - corners of a cell (3 triangles, 4 tetrahedra), vertices and cells of all ranks. */
+PETSC_EXTERN PetscErrorCode EqmSoupGetSizes(EqmSoup soup, PetscInt *cell_size, PetscInt *num_vertices,
+                                            PetscInt *num_cells);
+/* EqmSoupGetVertices - this rank's slab: input vertices `start` to `end` - 1, three coordinates each. */
+PETSC_EXTERN PetscErrorCode EqmSoupGetVertices(EqmSoup soup, PetscInt *start, PetscInt *end,
+                                               const PetscReal **vertices);
+/* EqmSoupGetCells - this rank's slab: input cells `start` to `end` - 1, as input vertex numbers. */
+PETSC_EXTERN PetscErrorCode EqmSoupGetCells(EqmSoup soup, PetscInt *start, PetscInt *end, const PetscInt **cells);
+/* EqmSoupGetFile - where it came from. */
+PETSC_EXTERN PetscErrorCode EqmSoupGetFile(EqmSoup soup, const char **file);
 
 /* EqmSoupCreateFromRoot - distribute a mesh that rank 0 holds to all ranks, in balanced contiguous slabs.
 

@@ -1,5 +1,6 @@
 /* equimap check MESH: what the mesh is, what is wrong with it, what each command would say. */
 #include "app.h"
+#include "mesh/mesh_private.h"
 #include "base/atomicfile.h"
 #include "intake/intake.h"
 #include "mesh/handles.h"

@@ -1,5 +1,6 @@
 /* equimap convert IN OUT: from one mesh format to another, mended, refined or peeled on the way. */
 #include "app.h"
+#include "mesh/mesh_private.h"
 #include "mesh/target.h"
 #include "prepare/prepare.h"
 

@@ -1,5 +1,6 @@
 /* equimap measure MESH MAP: distortion and folds of any map of the mesh. */
 #include "app.h"
+#include "mesh/mesh_private.h"
 #include "base/atomicfile.h"
 #include "base/rows.h"
 #include "format/format.h"

@@ -1,5 +1,6 @@
 /* Which boundary vertices go to the corners of the square, as arc lengths along the boundary. */
 #include "domain/corners.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 /* Arc lengths of the user's corners; they must be boundary vertices in the boundary's order. */

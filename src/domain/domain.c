@@ -222,3 +222,10 @@ PetscErrorCode EqmDomainPlaceBoundary(EqmDomain domain, EqmPlace *place)
   PetscCall(domain->place_boundary(domain, place));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode EqmDomainGetDimension(EqmDomain domain, PetscInt *dim)
+{
+  PetscFunctionBegin;
+  *dim = domain->dim;
+  PetscFunctionReturn(0);
+}

@@ -1,8 +1,36 @@
-/* Shared by the files of this folder. */
+/* The fields of a domain, read-only after creation, and what the files of this folder share. */
 #ifndef EQM_DOMAIN_PRIVATE_H
 #define EQM_DOMAIN_PRIVATE_H
 
 #include <equimap/domain.h>
+#include "mesh/mesh_private.h"
+
+struct _p_EqmDomain {
+  EqmMesh mesh;
+  const char *name;
+  EqmMeasureKind measure; /* of image cells */
+  PetscBool
+      curved_image; /* image cells can fold without a change of sign of their measure: look at EQM_MEASURE_HALF_DET */
+  PetscBool spherical_coordinates;                /* vertices on the sphere move by their angles */
+  PetscInt dim;                                   /* coordinates of a place: 2 or 3 */
+  const EqmVertexMotion *motion[EQM_MAX_MOTIONS]; /* the kinds of vertices, NULL behind the last */
+  unsigned char *kind;                            /* per local vertex: its place in `motion` */
+  PetscInt *dof_start;          /* per local vertex: place of its first degree of freedom in the global vector */
+  unsigned char *dof_count;     /* per local vertex */
+  PetscInt num_dofs, dof_first; /* owned degrees of freedom, and the global number of the first */
+  PetscBool has_frames;         /* some kind stores three reals per vertex */
+  PetscReal target_measure;     /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
+  PetscReal boundary_length;    /* of the target: 2 pi, 4 */
+  PetscReal corner_arc[4];      /* square: arc lengths of the corners */
+  PetscErrorCode (*place_boundary)(EqmDomain, EqmPlace *);
+  PetscReal *arc_length; /* per local vertex: arc length along the boundary loop in [0, 1), -1 inside (disk, square) */
+};
+
+/* The kind of a local vertex. Not collective. */
+static inline const EqmVertexMotion *EqmDomainMotion(EqmDomain domain, PetscInt v)
+{
+  return domain->motion[domain->kind[v]];
+}
 
 /* A planar domain without kinds of vertices yet, with the arc length of the boundary. Collective. */
 PETSC_INTERN PetscErrorCode EqmDomainCreatePlanar(EqmMesh mesh, const char *name, EqmDomain *domain);

@@ -1,5 +1,6 @@
 /* Mobius maps of the sphere: conformal maps are unique up to these (004 section 2.1). */
 #include <equimap/domain.h>
+#include "domain/domain_private.h"
 #include "geometry/simplex.h"
 
 /* Beyond this radius one step of centring would throw nearly everything to one side. */

@@ -1,4 +1,5 @@
 #include "domain/projective.h"
+#include "domain/domain_private.h"
 #include "geometry/simplex.h"
 #include "geometry/rotation.h"
 

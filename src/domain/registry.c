@@ -1,5 +1,6 @@
 /* Domains by name. */
 #include "domain/domain_private.h"
+#include "mesh/mesh_private.h"
 
 static PetscErrorCode Disk(EqmMesh mesh, const EqmDomainOptions *options, EqmDomain *domain)
 {

@@ -1,5 +1,6 @@
 /* The normalised authalic energy (000 (4)): zero if and only if every cell keeps its share of the total. */
 #include <equimap/energy.h>
+#include "domain/domain_private.h"
 
 PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy, Vec gradient)
 {

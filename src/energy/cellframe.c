@@ -1,4 +1,5 @@
 #include "energy/cellframe.h"
+#include "domain/domain_private.h"
 #include "geometry/simplex.h"
 
 /* In the ball nearly every cell is one of these. */

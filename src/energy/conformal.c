@@ -1,6 +1,7 @@
 /* The conformal energy: how far the Dirichlet energy is above the area, zero for conformal maps alone (004 section 2.1;
    Hutchinson 1991). */
 #include <equimap/energy.h>
+#include "domain/domain_private.h"
 #include "energy/loops.h"
 
 /* 1/2 sum of weight * edge^2 less the image's measure: one small number per cell, which is not negative where the

@@ -1,5 +1,6 @@
 /* First and second derivatives of a cell's image measure along the geodesics of its corners. */
 #include "energy/curvature.h"
+#include "domain/domain_private.h"
 #include "geometry/simplex.h"
 
 /* Displacements of the corners of a cell. */

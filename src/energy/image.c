@@ -1,5 +1,6 @@
 /* Loops over image simplices. */
 #include <equimap/energy.h>
+#include "domain/domain_private.h"
 #include "geometry/simplex.h"
 #include "energy/loops.h"
 

@@ -1,5 +1,6 @@
 /* Laplacians by edge weights per cell: applied without a matrix, assembled in linalg. */
 #include <equimap/energy.h>
+#include "domain/domain_private.h"
 #include "geometry/simplex.h"
 #include "energy/loops.h"
 

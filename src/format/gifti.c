@@ -2,6 +2,7 @@
    beside. */
 #define _GNU_SOURCE
 #include "beside.h"
+#include "mesh/mesh_private.h"
 #include "builder.h"
 #include "encoding.h"
 #include "metadata.h"

@@ -1,6 +1,7 @@
 /* The mesh on the first rank, numbered along Morton's curve (Morton 1966): neighbours in space are neighbours in
    memory, and the numbers do not depend on how the mesh was dealt to the ranks. */
 #include "hierarchy/gather.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 #include <stdint.h>
 #include <stdlib.h>

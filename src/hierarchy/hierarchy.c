@@ -1,5 +1,6 @@
 /* The hierarchy as a whole. */
 #include "hierarchy/level.h"
+#include "mesh/mesh_private.h"
 #include "hierarchy/gather.h"
 #include "base/quiet.h"
 #include "base/rows.h"

@@ -1,5 +1,6 @@
 /* The mesh of a run that goes on: the one that is named, or the copy that lies beside the checkpoint. */
 #include "intake/intake.h"
+#include "mesh/mesh_private.h"
 #include "base/lookup.h"
 #include "store/keptmesh.h"
 

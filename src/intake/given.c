@@ -1,5 +1,6 @@
 /* What a map of a prepared mesh does to the cells of the file: these the user gets, so these are measured. */
 #include "intake/intake.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 #include "geometry/simplex.h"
 #include "store/map_private.h"

@@ -1,5 +1,6 @@
 /* The mesh that a run is given: read, prepared and repaired if asked, refused if it cannot be mapped. */
 #include "intake/intake.h"
+#include "mesh/mesh_private.h"
 #include "mesh/handles.h"
 #include "mesh/target.h"
 #include "store/keptmesh.h"

@@ -1,5 +1,6 @@
 /* Matrices from cell matrices: the pattern once, from the graph of the vertices, the values as often as needed. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 #include "mesh/build.h"
 
 struct _p_EqmAssembly {

@@ -1,5 +1,6 @@
 /* CHOLMOD on one rank. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 #include "linalg/cholmod_name.h"
 #include <omp.h>
 

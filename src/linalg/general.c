@@ -1,6 +1,7 @@
 /* Square matrices of meshes that are not positive definite: L D L^T with pivots where they are symmetric, else L U, by
    MUMPS through PETSc. The symbolic part is done once. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 
 struct _p_EqmGeneral {
   EqmMesh mesh;

@@ -1,5 +1,6 @@
 /* One face for the direct solvers and multigrid: which of them a matrix gets. What it does then: linear_solve.c. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 
 /* Larger fronts take half a gigabyte on one rank, and minutes that the other ranks wait. */
 enum { MOST_FRONT = 8000 };

@@ -1,5 +1,6 @@
 /* Factors and solutions, whatever solves. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 
 /* Multiply the diagonal: the smallest shift that makes a singular matrix definite without moving its solution. */
 static PetscErrorCode ScaleDiagonal(Mat matrix, PetscReal factor)

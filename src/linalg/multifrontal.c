@@ -1,5 +1,6 @@
 /* The multifrontal factor as a linear solver: one rank, any number of threads. */
 #include "linalg/frontal.h"
+#include "mesh/mesh_private.h"
 
 /* Has it the memory for what it did last? */
 static PetscErrorCode Check(EqmFrontal frontal, const char *what)

@@ -2,6 +2,7 @@
    would not fit. The matrix gets as many rows for every vertex, identities where a vertex has fewer unknowns, so that
    aggregates are sets of vertices. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 #include <petscksp.h>
 
 typedef struct {

@@ -1,6 +1,7 @@
 /* MUMPS on any number of ranks, called directly: PETSc's interface cannot hand it an ordering, and Debian's MUMPS has
    none of METIS's, whose nested dissection halves the fill. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 #include "base/narrow.h"
 #include <dmumps_c.h>
 

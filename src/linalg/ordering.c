@@ -1,6 +1,7 @@
 /* Nested dissection of the vertex graph. Ordering vertices, not unknowns, is four times cheaper, serves the scalar and
    the coupled matrices alike, and keeps the unknowns of a vertex together. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 #include "base/narrow.h"
 #include "mesh/build.h"
 

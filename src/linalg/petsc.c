@@ -1,6 +1,7 @@
 /* PETSc's own solvers, by options: -linear_solver petsc with -linear_ksp_type, -linear_pc_type, -linear_mat_type,
    -linear_vec_type and all that belongs to these. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 #include <petscksp.h>
 
 typedef struct {

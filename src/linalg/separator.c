@@ -1,5 +1,6 @@
 /* Separators between the ranks' shares of a mesh, and the order in which a rank eliminates what is its own. */
 #include "linalg/linalg.h"
+#include "mesh/mesh_private.h"
 #include "mesh/build.h"
 
 /* Of every edge between two ranks the end on the lower rank is a separator: all rows of the unknowns left, as stored in

@@ -7,6 +7,7 @@
    transpose, less D, is the wanted -A_SI A_II^-1 A_IS. As A is at most m diag(A) for m entries to a row, D is of the
    size of A's diagonal and costs no digits. */
 #include "linalg/substructure.h"
+#include "mesh/mesh_private.h"
 #include <petscblaslapack.h>
 
 enum { MOST_VERTEX_UNKNOWNS = 3, PANEL = 96 };

@@ -1,5 +1,6 @@
 /* Symbolic work of substructuring (substructure.c says what it is). */
 #include "linalg/substructure.h"
+#include "mesh/mesh_private.h"
 
 static PetscErrorCode CreateSeparatorUnknowns(EqmLinear linear, const EqmSeparation *separation)
 {

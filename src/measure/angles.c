@@ -1,5 +1,6 @@
 /* What a map does to angles: their differences, the quasi-conformal distortion. */
 #include "measure/angles.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "measure/quantile.h"
 #include "store/map_private.h"

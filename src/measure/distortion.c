@@ -1,5 +1,6 @@
 /* Distortion of a map as the papers measure it; every number from the coordinates alone. */
 #include <equimap/energy.h>
+#include "mesh/mesh_private.h"
 #include <float.h>
 #include "geometry/simplex.h"
 #include "measure/angles.h"

@@ -1,4 +1,5 @@
 #include "measure/foreign.h"
+#include "mesh/mesh_private.h"
 #include "store/map_private.h"
 
 /* Are the images of all vertices their own positions, but for a millionth of the mesh's size? Collective. */

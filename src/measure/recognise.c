@@ -1,4 +1,5 @@
 #include "measure/recognise.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 /* How far, as a part of the radius or side, vertices may lie from the circle, sphere or square that they are on. */

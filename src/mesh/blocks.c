@@ -1,5 +1,6 @@
 /* What the threads share out: blocks of vertices with the cells they look at, and the measures of the cells. */
 #include "mesh/build.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 /* The blocks that a cell's owned vertices lie in, each once; returns how many. */

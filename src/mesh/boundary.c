@@ -1,5 +1,6 @@
 /* The boundary: its facets, its vertices, and for a disk-type surface the order and arc length of its loop. */
 #include "mesh/build.h"
+#include "mesh/mesh_private.h"
 
 /* The facet opposite a corner, oriented as the boundary of a positively oriented cell. */
 static const PetscInt facet_of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};

@@ -1,6 +1,7 @@
 /* The double covering of a surface with a boundary: the surface and its mirror image, glued along the boundary into one
    closed surface (004 section 2.2). */
 #include "mesh/build.h"
+#include "mesh/mesh_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 

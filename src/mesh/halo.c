@@ -1,5 +1,6 @@
 /* Arrays over the local vertices: ghosts from their owners, shares of the cells' weights. */
 #include "base/rows.h"
+#include "mesh/mesh_private.h"
 #include <equimap/mesh.h>
 
 PetscErrorCode EqmMeshUpdateGhosts(EqmMesh mesh, PetscInt width, PetscReal *array)

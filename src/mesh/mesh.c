@@ -1,5 +1,6 @@
 /* The distributed mesh: made from a soup, destroyed, its ghosts refreshed. */
 #include "mesh/build.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 #include "geometry/simplex.h"
 

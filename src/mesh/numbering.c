@@ -1,5 +1,6 @@
 /* Between the mesh's numbering and the input's. */
 #include "mesh/build.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 
 PetscErrorCode EqmMeshVerticesToInput(EqmMesh mesh, EqmSoup soup, PetscInt width, const PetscReal *owned,

@@ -1,5 +1,6 @@
 /* The closed surface around a solid, as a mesh of its own whose vertices know their places in the solid. */
 #include "mesh/build.h"
+#include "mesh/mesh_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 

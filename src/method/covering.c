@@ -2,6 +2,7 @@
    the covering to the sphere, a Mobius map brings the boundary to the equator, stereographic projection the surface's
    own half to the disk. One step is a step on the sphere. */
 #include "method/method.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 typedef struct {

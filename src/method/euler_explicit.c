@@ -1,5 +1,6 @@
 /* The explicit Euler method (004 section 3.1): no system to solve, but stable for tiny time steps only. */
 #include "method/flow.h"
+#include "mesh/mesh_private.h"
 
 typedef struct {
   EqmFlowSettings flow;

@@ -1,6 +1,7 @@
 /* The implicit Euler method (004 (8), (9), Appendix): each step solves a nonlinear system that couples the coordinates,
    by Newton's method. */
 #include "method/flow.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 typedef struct {

@@ -1,6 +1,7 @@
 /* The fixed-point iteration of stretch energy minimisation: disk with a moving boundary (000 (14)), square (002
  * Algorithm 1). */
 #include "method/method.h"
+#include "domain/domain_private.h"
 
 typedef struct {
   PetscReal *weights, *columns, *inverted;

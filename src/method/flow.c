@@ -1,4 +1,5 @@
 #include "method/flow.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 PetscErrorCode EqmFlowLaplacian(EqmProblem problem, const EqmPlace *place, PetscReal *af, PetscReal *normal)

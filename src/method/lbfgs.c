@@ -1,6 +1,7 @@
 /* L-BFGS on the objective of the problem with the Laplacian metric as initial inverse Hessian. The frames of the
    domain carry steps and gradients along: the recursion is the Euclidean one on every domain. */
 #include "method/method.h"
+#include "domain/domain_private.h"
 #include "method/pairs.h"
 #include "method/wolfe.h"
 

@@ -9,6 +9,7 @@
    step, for the mean's rank-one term, for the bend of the geodesic. Then the factor serves as the initial inverse
    Hessian of quasi-Newton steps for as long as these pay. */
 #include "method/lm.h"
+#include "domain/domain_private.h"
 #include <math.h>
 #include <string.h>
 

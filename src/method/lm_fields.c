@@ -2,6 +2,7 @@
    squared, vanishes on fields without divergence and its second, the damping, is small on smooth ones: both at once on
    the smooth divergence-free fields, of which a patch of the map sees those of lowest order. */
 #include "method/lm.h"
+#include "domain/domain_private.h"
 
 enum { PLANAR_FIELDS = 5, SPHERE_FIELDS = 8 };
 

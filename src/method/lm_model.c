@@ -1,5 +1,6 @@
 /* The Gauss-Newton model at the present map: matrix, right-hand sides, step and bend. */
 #include "method/lm.h"
+#include "domain/domain_private.h"
 #include "energy/cellframe.h"
 #include "geometry/simplex.h"
 

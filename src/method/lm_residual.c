@@ -1,5 +1,6 @@
 /* Residuals of a map and their sums. */
 #include "method/lm.h"
+#include "domain/domain_private.h"
 #include "energy/loops.h"
 #include <math.h>
 

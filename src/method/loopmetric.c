@@ -9,6 +9,7 @@
    solves them for the whole loop, as it is rank 0 that orders it: the square root of the mesh's size, in work and in
    memory. */
 #include "method/loopmetric.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 
 struct _p_EqmLoopMetric {

@@ -1,6 +1,7 @@
 /* Preconditioned nonlinear conjugate gradients (000 Algorithm 1), with refreshed preconditioner, other betas and a
  * guard. */
 #include "method/method.h"
+#include "domain/domain_private.h"
 
 enum { BETA_FR, BETA_PR, BETA_HZ };
 static const char *const ncg_betas[] = {"fletcher-reeves", "polak-ribiere", "hager-zhang",

@@ -2,6 +2,7 @@
    stretch Laplacian. The matrix is the exact Hessian of sum a^2/(w A) - A but for the two rank-one terms by which the
    total volume couples everything; on the ball the total hardly changes. */
 #include "method/method.h"
+#include "domain/domain_private.h"
 #include "energy/curvature.h"
 
 enum { MOST_DAMPINGS = 40 };

@@ -1,6 +1,7 @@
 /* The two-phase quasi-implicit Euler method (004 Algorithm 5.1). Phase I, (I + dt A) f' = f, forgets a poor start;
    phase II, (I + dt (A - <A f, f>)) f' = f, goes to the harmonic map, and its matrix is indefinite. */
 #include "method/flow.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "measure/quantile.h"
 #include <string.h>

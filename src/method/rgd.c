@@ -1,5 +1,6 @@
 /* Riemannian gradient descent (001 Algorithm 1) with the two line searches of the paper. */
 #include "method/method.h"
+#include "mesh/mesh_private.h"
 #include "method/brent.h"
 
 typedef enum { SEARCH_INTERPOLATION, SEARCH_BRENT } RgdLineSearch;

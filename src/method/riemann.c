@@ -1,6 +1,7 @@
 /* The Riemann map of a disk-type surface by L-BFGS on the boundary's angles: one factorisation, two solves per
    evaluation (docs/methods.md, Riemann map). */
 #include "method/riemann.h"
+#include "mesh/mesh_private.h"
 #include "method/loopmetric.h"
 #include "method/pairs.h"
 

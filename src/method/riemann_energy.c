@@ -1,5 +1,6 @@
 /* Riemann map by boundary angles: elimination of the interior, value and gradient (docs/methods.md, Riemann map). */
 #include "method/riemann.h"
+#include "domain/domain_private.h"
 
 /* h = m_B - L_BI L_II^-1 m_I: weights of the boundary's vertices in the mass centre of a harmonic map. */
 static PetscErrorCode FindCentreWeights(EqmProblem problem, EqmRiemann riemann)

@@ -1,5 +1,6 @@
 /* A result file, read back to be looked at. */
 #include "picture/picture.h"
+#include "mesh/mesh_private.h"
 #include "h5/h5.h"
 #include "store/store.h"
 #include <math.h>

@@ -1,4 +1,5 @@
 #include "prepare/step.h"
+#include "mesh/mesh_private.h"
 
 PetscErrorCode EqmChangeAssemble(EqmChange *change, EqmVertexGroup *added, EqmCellList *list)
 {

@@ -1,6 +1,7 @@
 /* Cut small handles, the topological noise of scans (Guskov and Wood 2001), along a short loop each, and fill both
    sides. The whole mesh visits rank 0 for it, and so this is for meshes of a limited size. */
 #include "prepare/step.h"
+#include "mesh/mesh_private.h"
 #include "mesh/handles.h"
 #include <string.h>
 

@@ -1,5 +1,6 @@
 /* The table of steps, and how they follow each other. */
 #include "prepare/step.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 #include <string.h>
 

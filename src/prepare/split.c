@@ -1,5 +1,6 @@
 /* Remove duplicate cells, cut a surface apart where it is not a manifold, turn what disagrees with its neighbours. */
 #include "prepare/step.h"
+#include "mesh/mesh_private.h"
 #include "base/exchange.h"
 #include "base/sets.h"
 

@@ -1,5 +1,6 @@
 /* Join boundary vertices that lie at the same place: seams that programs tear open for their texture coordinates. */
 #include "prepare/step.h"
+#include "mesh/mesh_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 #include "base/sets.h"

@@ -1,5 +1,6 @@
 /* The objectives of the area- and volume-preserving maps. */
 #include "problem/objective.h"
+#include "domain/domain_private.h"
 
 PetscErrorCode EqmSumMeasures(EqmProblem problem, EqmIterate iterate)
 {

@@ -8,6 +8,7 @@
    unfolded. T is the target's measure. Every cell counts alike: by volume, slivers would be given up. With eps -> 0
    what is folded costs ever more, what is not folded stays so. */
 #include "problem/barrier.h"
+#include "domain/domain_private.h"
 #include "geometry/simplex.h"
 
 /* Each facet's share of the surface; its owner, that of its lowest vertex, adds it up. */

@@ -1,6 +1,7 @@
 /* What the barrier against folds adds to the metric of L-BFGS: A/2 times the positive part of its Hessian, cell by
    cell; without it, the metric knows nothing of what holds the cells that matter most. */
 #include "problem/barrier.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 /* The barrier's term of a cell at the present map. */

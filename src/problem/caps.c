@@ -1,5 +1,6 @@
 /* Maps to the sphere seen from a pole: stereographic caps, and the fixed-point step of 001 Algorithm 2 on them. */
 #include "problem/problem.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "measure/quantile.h"
 

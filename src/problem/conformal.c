@@ -2,6 +2,7 @@
    metric, its step limit. The last term holds the mass centre c: Mobius maps change the first two by the error of the
    mesh only, and would drift. */
 #include "problem/objective.h"
+#include "domain/domain_private.h"
 
 /* Those of the areas, but the energy is Dirichlet's, 1/2 tr f^T L f with the mesh's cotangents. */
 static PetscErrorCode SumDirichlet(EqmProblem problem, EqmIterate iterate)

@@ -1,5 +1,6 @@
 /* Matrices of all degrees of freedom of the domain. */
 #include "problem/problem.h"
+#include "domain/domain_private.h"
 
 /* A solver with the domain's degrees of freedom as unknowns. The start's own, a quarter of the memory and of no more
    use, goes. Collective. */

@@ -1,5 +1,6 @@
 /* Maps under way. */
 #include "problem/problem.h"
+#include "mesh/mesh_private.h"
 #include "problem/objective.h"
 
 PetscErrorCode EqmIterateCreate(EqmProblem problem, EqmIterate *out)

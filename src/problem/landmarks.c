@@ -1,5 +1,6 @@
 /* The landmark term of an objective: value, gradient, and the shares of its diagonal that cells contribute. */
 #include "problem/landmarks.h"
+#include "domain/domain_private.h"
 
 PetscErrorCode EqmLandmarksReset(EqmLandmarks *landmarks)
 {

@@ -1,5 +1,6 @@
 /* Scalar Laplacians with some vertices held or decoupled: one pattern, one symbolic factor for all of them. */
 #include "problem/problem.h"
+#include "domain/domain_private.h"
 
 typedef struct {
   EqmMesh mesh;

@@ -5,6 +5,7 @@
    compression and soft for everything else: there the metric is the Gauss-Newton matrix with a little of L_V, coupled
    over all coordinates (docs/methods.md, Solids). */
 #include "problem/metric.h"
+#include "domain/domain_private.h"
 #include "energy/cellframe.h"
 #include "problem/objective.h"
 #include "geometry/simplex.h"

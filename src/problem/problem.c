@@ -1,4 +1,5 @@
 #include "problem/problem.h"
+#include "domain/domain_private.h"
 #include "problem/barrier.h"
 #include "problem/term.h"
 #include <stdarg.h>

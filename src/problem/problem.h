@@ -7,6 +7,7 @@
 #define EQM_PROBLEM_H
 
 #include <equimap/energy.h>
+#include "domain/domain_private.h"
 #include <equimap/map.h>
 #include "linalg/linalg.h"
 #include "problem/landmarks.h"

@@ -1,5 +1,6 @@
 /* Parts of a run's state that have a shape of their own: maps, and vectors of degrees of freedom. */
 #include "problem/state.h"
+#include "domain/domain_private.h"
 
 /* A map and, on curved domains, its frames. Collective. */
 PetscErrorCode EqmStatePlace(EqmState state, EqmDomain domain, const char *name, EqmPlace *place)

@@ -6,6 +6,7 @@
    zero for isometries alone and infinite for folds: neither areas nor angles may be far off. |J|^2 T w is the sum D of
    cot |x_i - x_j|^2 over the triangle's edges, whatever the mesh's size, and det = a / (T w). */
 #include "problem/objective.h"
+#include "domain/domain_private.h"
 #include "energy/loops.h"
 #include <math.h>
 

@@ -1,5 +1,6 @@
 /* The angle energy beside another one (docs/methods.md, Uniqueness): Dirichlet's less the area. */
 #include "problem/term.h"
+#include "mesh/mesh_private.h"
 
 typedef struct {
   struct _p_EqmTerm term;

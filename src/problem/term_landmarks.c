@@ -1,5 +1,6 @@
 /* Vertices that are drawn to places: sum |x(v_i) - q_i|^2 (000 (46), 001 section 6.6). */
 #include "problem/term.h"
+#include "domain/domain_private.h"
 
 static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image,
                           PetscReal *value, Vec gradient)

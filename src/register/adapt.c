@@ -1,5 +1,6 @@
 /* The map h of the target to itself: a rotation, a flow, and the minimisation that makes the landmarks meet. */
 #include "register/registration.h"
+#include "mesh/mesh_private.h"
 #include "register/closest.h"
 #include "register/landmark_flow.h"
 #include "geometry/rotation.h"

@@ -1,5 +1,6 @@
 /* Without landmarks: the rotation of A's map under which A, carried to B, is most like a rigid motion of A. */
 #include "register/sample.h"
+#include "mesh/mesh_private.h"
 #include "geometry/rotation.h"
 #include <math.h>
 

@@ -1,5 +1,6 @@
 /* phi = g^-1 o h o f and its inverse by point location, and what they are worth. */
 #include "register/registration.h"
+#include "mesh/mesh_private.h"
 #include "geometry/rotation.h"
 #include <string.h>
 

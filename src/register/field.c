@@ -1,5 +1,6 @@
 /* Where fields come from: the mesh itself, its HDF5 file, a CSV file. */
 #include "register/field.h"
+#include "mesh/mesh_private.h"
 #include "format/table.h"
 #include "h5/h5.h"
 #include "base/rows.h"

@@ -1,5 +1,6 @@
 /* The linear homotopy from A to its correspondence on B (000 (51), 001 (6.7), 003 (46)) as a series of frames. */
 #include "register/registration.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "store/store.h"
 #include <string.h>

@@ -1,6 +1,7 @@
 /* Where landmarks should go: from vertices of B, points of B's surface or points of the target to places of the target.
  */
 #include "register/registration.h"
+#include "mesh/mesh_private.h"
 
 /* Do all points lie on the unit sphere (in the unit disk)? */
 static PetscBool LieInTarget(const EqmRegistration r)

@@ -1,6 +1,7 @@
 /* Distributed point location: questions go to the ranks whose cells may hold the point, answers come back; what lies
    outside all cells is asked again from every rank that could be closer. */
 #include "register/tree.h"
+#include "mesh/mesh_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 #include <math.h>

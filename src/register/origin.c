@@ -1,5 +1,6 @@
 /* From a mended mesh back to the mesh of the file, and the other way. */
 #include "register/origin.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 #include <string.h>
 

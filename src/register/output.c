@@ -1,5 +1,6 @@
 /* What a registration adds to the result: locations, inverse map, figures. */
 #include "register/registration.h"
+#include "mesh/mesh_private.h"
 
 /* Values per owned vertex to the slab of the input numbering, as an array of the result; `fallback` for vertices of no
    cell. */

@@ -1,5 +1,6 @@
 /* The registration as an object: the way from two files to a correspondence, the figures for people. */
 #include "register/registration.h"
+#include "mesh/mesh_private.h"
 #include "solver/inner.h"
 #include "store/keptmesh.h"
 #include <string.h>

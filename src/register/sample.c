@@ -1,5 +1,6 @@
 /* A sample of vertices and how far A carried to B is from a rigid motion of A. */
 #include "register/sample.h"
+#include "mesh/mesh_private.h"
 #include "geometry/rotation.h"
 
 PetscErrorCode EqmSampleDestroy(EqmSample *s)

@@ -1,5 +1,6 @@
 /* One side of a registration: a mesh with its map to the target, computed or read. */
 #include "register/registration.h"
+#include "mesh/mesh_private.h"
 #include "register/closest.h"
 #include "base/lookup.h"
 #include "solver/inner.h"

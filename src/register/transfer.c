@@ -1,5 +1,6 @@
 /* Fields of one mesh carried to the other, and back. */
 #include "register/registration.h"
+#include "mesh/mesh_private.h"
 #include <string.h>
 
 /* Where the middles of `to`'s cells lie among `from`'s. */

@@ -1,5 +1,6 @@
 /* Setters and getters of a solver. */
 #include "solver/solver_private.h"
+#include "domain/domain_private.h"
 #include "solver/inner.h"
 #include "store/map_private.h"
 

@@ -1,5 +1,6 @@
 /* When a checkpoint is written, and when a run stops because it was asked to. */
 #include "solver/solver_private.h"
+#include "mesh/mesh_private.h"
 #include "base/atomicfile.h"
 #include "base/lookup.h"
 #include "base/quiet.h"

@@ -1,5 +1,6 @@
 /* Which checkpoint a run goes on from. */
 #include "solver/solver_private.h"
+#include "mesh/mesh_private.h"
 #include "solver/inner.h"
 #include "base/lookup.h"
 #include "base/quiet.h"

@@ -1,5 +1,6 @@
 /* What a checkpoint holds. */
 #include "solver/solver_private.h"
+#include "mesh/mesh_private.h"
 #include "store/keptmesh.h"
 
 enum { HISTORY_COLUMNS = 10 };

@@ -9,6 +9,7 @@
    cells around a vertex, of these cells' norms. H less a shift below that bound is definite; its inverse, a factor and
    two extra columns (Woodbury), turns H's smallest eigenvalues into the largest, which Lanczos finds at once. */
 #include "solver/solver_private.h"
+#include "domain/domain_private.h"
 #include "energy/curvature.h"
 #ifdef EQM_HAVE_SLEPC
 #include <slepceps.h>

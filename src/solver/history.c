@@ -1,5 +1,6 @@
 /* The history of a run, and what is told to the monitor. */
 #include "solver/solver_private.h"
+#include "mesh/mesh_private.h"
 
 PetscErrorCode EqmHistoryReserve(EqmSolver solver, PetscInt rows)
 {

@@ -1,6 +1,7 @@
 /* Conformal maps of closed surfaces that fold, or that have cells too small for the arithmetic: once more on the
    intrinsic Delaunay triangulation (docs/methods.md, Thin limbs). */
 #include "solver/solver_private.h"
+#include "domain/domain_private.h"
 #include <string.h>
 
 /* A map of another mesh of the same vertices becomes the solver's: normalised, unfolded if it must be. */

@@ -1,4 +1,5 @@
 #include "solver/judge.h"
+#include "mesh/mesh_private.h"
 #include <string.h>
 
 /* Has the objective all but stopped falling over the last iterations? */

@@ -1,5 +1,6 @@
 /* The Mobius map that leaves least area distortion: three parameters, the shift's, by a quasi-Newton method. */
 #include "solver/normalise.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 typedef struct {

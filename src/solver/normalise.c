@@ -1,6 +1,7 @@
 /* Angle-preserving maps to the sphere are unique up to Mobius maps: which one is it to be? The mass centre in the
    middle; three vertices at given places; least area distortion; or landmarks near given places. */
 #include "solver/solver_private.h"
+#include "mesh/mesh_private.h"
 #include "domain/projective.h"
 #include "geometry/simplex.h"
 #include "format/landmark_list.h"

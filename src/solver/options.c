@@ -1,5 +1,6 @@
 /* The options of a solver: defaults, names, help; and how what they leave open is settled. */
 #include "solver/solver_private.h"
+#include "mesh/mesh_private.h"
 #include "solver/inner.h"
 #include <string.h>
 

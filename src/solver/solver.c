@@ -1,5 +1,6 @@
 /* The loop that all methods share: set up, iterate, unfold. */
 #include "solver/solver_private.h"
+#include "domain/domain_private.h"
 #include "solver/inner.h"
 #include "solver/judge.h"
 #include <string.h>

@@ -1,6 +1,7 @@
 /* First maps of solids to the ball (003 section 4): the surface goes to the sphere by a map that is handed in, the
    interior follows by volumetric stretch energy minimisation with the boundary held. */
 #include "start/start.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 /* Mean and covariance of the vertices' places (003 (12)). */

@@ -1,6 +1,7 @@
 /* First maps by a cascade of ever finer meshes (src/hierarchy): smooth, without folds, at a cost that grows with the
    number of vertices. The hierarchy is on one rank. */
 #include "start/start.h"
+#include "domain/domain_private.h"
 #include "hierarchy/cascade.h"
 
 /* From several ranks no larger mesh is gathered on the first. */

@@ -3,6 +3,7 @@
    need a dozen steps, as the eigenvalues of the product lie between those of a sphere's first modes and one, and the
    map's one factor is that which the minimisation needs anyway. */
 #include "start/start.h"
+#include "mesh/mesh_private.h"
 #include "problem/metric.h"
 
 enum { WIDTH = 2, MOST_STEPS = 200 };

@@ -1,6 +1,7 @@
 /* The Gauss map: each vertex goes to its normal (004 Definition 5.1). Hollows fold; a few steps of heat flow on the
    sphere smooth that away. */
 #include "start/start.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "unfold/unfold.h"
 

@@ -1,6 +1,7 @@
 /* The default's first map to the sphere: the linear map, and where that is none to begin with, fixed-point steps and
    unfolding, or two hemispheres. */
 #include "start/start.h"
+#include "mesh/mesh_private.h"
 #include "unfold/unfold.h"
 #include <stdint.h>
 

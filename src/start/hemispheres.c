@@ -5,6 +5,7 @@
    neighbours elsewhere: what lies below and above is connected, as every vertex has a lower and a higher neighbour. The
    curve runs through triangles and edges, not through vertices, so no vertex is on it twice. */
 #include "start/start.h"
+#include "mesh/mesh_private.h"
 #include "measure/quantile.h"
 #include "unfold/unfold.h"
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 /* First maps to the disk and the square: boundary by arc length, interior by a Laplacian. */
 #include "start/start.h"
+#include "domain/domain_private.h"
 
 /* Smallest positive zero of a0 + b t + c t^2, a0 > 0; infinite where there is none. */
 static PetscReal FirstZero(PetscReal a0, PetscReal b, PetscReal c)

@@ -2,6 +2,7 @@
    triangles of area 1e-20 on the sphere are not rare, and with 16 digits no determinant of such corners has a sign that
    does not depend on the order of its computation. */
 #include "start/start.h"
+#include "domain/domain_private.h"
 
 /* Limbs are given a conductivity that falls towards their tips, as a power of the scale at which the conformal map has
    them, from this scale (its logarithm) down. Along a limb a harmonic map then shrinks less: with the power 2 lambda by

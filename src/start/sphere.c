@@ -1,5 +1,6 @@
 /* First maps to the sphere. */
 #include "start/start.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "problem/objective.h"
 #include "unfold/unfold.h"

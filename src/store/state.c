@@ -1,5 +1,6 @@
 /* Scalars, texts and names of a state: what each call does while the state is announced, written or read. */
 #include "store/state_private.h"
+#include "mesh/mesh_private.h"
 #include <string.h>
 
 PetscErrorCode EqmStateTableAdd(EqmStateTable *table, const char *name, PetscInt *index)

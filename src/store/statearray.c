@@ -1,5 +1,6 @@
 /* Arrays of a state: every rank announces, writes or reads its slab. */
 #include "store/state_private.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 
 /* This rank's share of rows; or, for what is the same everywhere, rank 0's writing all of them. */

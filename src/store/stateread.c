@@ -1,5 +1,6 @@
 /* Opening the file of a state: all of it is checked before anything is read from it. */
 #include "store/state_private.h"
+#include "mesh/mesh_private.h"
 
 static PetscErrorCode SplitNames(const char *list, EqmStateTable *table)
 {

@@ -1,5 +1,6 @@
 /* The file of a state: written whole. */
 #include "store/state_private.h"
+#include "mesh/mesh_private.h"
 #include <string.h>
 
 /* All names of a table, with commas between them. */

@@ -4,6 +4,7 @@
    1997). Angles pay for it: only edges around folds are changed, then those around the folds that are left, and at the
    last all of them. */
 #include "unfold/unfold.h"
+#include "mesh/mesh_private.h"
 
 enum { MOST_ROUNDS = 30 };
 static const PetscReal least_weight = 1e-2; /* of an edge; between equilateral triangles it is 1/sqrt(3) */

@@ -2,6 +2,7 @@
    round it is made a mean-value map of its rim, which straightens what it can, and so on with the next. Caps alternate
    between large and small. */
 #include "unfold/unfold.h"
+#include "mesh/mesh_private.h"
 #include "linalg/linalg.h"
 #include "geometry/simplex.h"
 

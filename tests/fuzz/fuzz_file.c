@@ -2,6 +2,7 @@
    (EQM_FUZZ_TABLE). */
 #define _GNU_SOURCE
 #include "fuzz.h"
+#include "mesh/mesh_private.h"
 #include <stdio.h>
 #include <sys/mman.h>
 #include <unistd.h>

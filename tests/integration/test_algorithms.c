@@ -1,6 +1,7 @@
 /* The papers' algorithms written out a second time, plainly, against the methods of the house: the fixed point of 000
    (14) with dense matrices, 000 Algorithm 1 with its step (18), 002 Algorithm 1. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 
 /* ---- dense linear algebra for small meshes */
 

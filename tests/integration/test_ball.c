@@ -1,5 +1,6 @@
 /* Solids to the ball: every method, alone and together, turned inputs, the mending of folds. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "unfold/unfold.h"
 
 /* The default reaches a map without folds; Newton's method a minimum that the others do not go below. */

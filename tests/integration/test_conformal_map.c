@@ -1,6 +1,7 @@
 /* Whole runs of angle-preserving maps of closed surfaces: small angle errors without folds, the sphere itself, the same
    map on any number of ranks, the same bits for any number of threads. */
 #include "support/runs.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "store/map_private.h"
 

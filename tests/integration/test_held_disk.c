@@ -1,5 +1,6 @@
 /* Maps to the disk whose boundary is held at given angles (-boundary_angles, 000 section 6). */
 #include "support/runs.h"
+#include "mesh/mesh_private.h"
 #include <stdio.h>
 
 /* By the number of ranks: tests on other numbers may run beside this one. */

@@ -1,5 +1,6 @@
 /* Conformal maps of closed surfaces with thin limbs, on which other maps jam or fold. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "store/map_private.h"
 
 /* Folds as others count them: determinants as they stand in the textbook. */

@@ -1,5 +1,6 @@
 /* Equal runs on the same ranks give equal bits: mesh, start, method and history, whoever is first to send. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 
 enum { REPETITIONS = 10 };
 

@@ -3,6 +3,7 @@
 #define EQM_TEST_PUBLISHED_H
 
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include <stdlib.h>
 
 /* The exit code of a test that had nothing to test. */

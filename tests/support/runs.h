@@ -3,6 +3,7 @@
 #define EQM_TEST_RUNS_H
 
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include <omp.h>
 #include <string.h>
 #include "store/map_private.h"

@@ -3,6 +3,7 @@
 #define EQM_TESTING_H
 
 #include <equimap.h>
+#include "domain/domain_private.h"
 #include "solver/solver_private.h"
 #include <stdio.h>
 

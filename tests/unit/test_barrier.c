@@ -1,5 +1,6 @@
 /* The barrier against folds of maps to the ball: its derivatives, what it adds to the metric, what it counts. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "problem/barrier.h"
 #include "solver/solver_private.h"
 

@@ -1,5 +1,6 @@
 /* Maps by the cascade: derivatives, relaxation, multigrid, and no fold on shapes good and bad. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 #include "hierarchy/balance.h"
 #include "hierarchy/cascade.h"
 #include "hierarchy/levelsystem.h"

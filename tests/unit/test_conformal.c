@@ -1,5 +1,6 @@
 /* The conformal energy on the sphere against differences, its lower bound, and the step limit of its objective. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 typedef struct {

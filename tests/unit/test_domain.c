@@ -1,5 +1,6 @@
 /* Domains: vertices stay where they belong, frames, geodesics, the order of the boundary, corners. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 
 /* Velocity and acceleration of geodesics against differences of places; Project undoes Expand. */
 static PetscErrorCode TestGeodesics(EqmDomain domain, const EqmPlace *place)

@@ -1,5 +1,6 @@
 /* The double covering of a surface, and the Riemann map by way of it. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "store/map_private.h"
 
 /* Half-edges of the soup's slab whose partner is missing, over all ranks. The whole mesh is small. */

@@ -1,6 +1,7 @@
 /* Energies, their gradients against central differences along geodesics, second derivatives, identities of Laplacians.
  */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 #include "energy/curvature.h"
 
 /* A function of a map. */

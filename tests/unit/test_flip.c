@@ -1,5 +1,6 @@
 /* Intrinsic Delaunay flips: what must stay, what must become, the same on any number of ranks. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 
 typedef struct {
   PetscInt64 flips;

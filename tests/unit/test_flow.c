@@ -1,6 +1,7 @@
 /* The heat flow of harmonic maps and the implicit Euler method's system (004 (7), (8), Appendix); matrices that are not
    positive definite. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "method/flow.h"
 

@@ -1,5 +1,6 @@
 /* Smallest eigenvalues of the Hessian against those of a dense matrix of differences of gradients. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 
 enum { SKIPPED = 77, WANTED = 12 };
 

@@ -1,5 +1,6 @@
 /* Coarser meshes of a surface: each is one, stands for the whole, and leads back to the finer. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "hierarchy/level.h"
 
 static PetscErrorCode Make(EqmMesh mesh, const PetscBool *corner, EqmHierarchy *hierarchy)

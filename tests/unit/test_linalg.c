@@ -1,6 +1,7 @@
 /* Assembly and linear solvers: residuals of several right-hand sides, what happens to matrices that are not definite.
  */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 #include <math.h>
 #include <omp.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* Levenberg-Marquardt's parts: gradient, Gauss-Newton matrix with metric and mean term, bend of the geodesic, each
    against differences of the residual itself. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 #include "method/lm.h"
 
 /* Three vertices are drawn to places where they are not. */

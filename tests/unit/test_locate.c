@@ -1,6 +1,7 @@
 /* Point location: points made in known cells are found there, points outside go to the closest place, and all of it is
    the same on any number of ranks; closest points and best rotations against brute force. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "register/closest.h"
 #include "geometry/rotation.h"
 #include "register/tree.h"

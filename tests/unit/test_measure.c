@@ -1,5 +1,6 @@
 /* Statistics of distributed samples against a serial sort; distortion of maps whose distortion is known. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "measure/quantile.h"
 #include "store/map_private.h"
 

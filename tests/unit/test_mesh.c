@@ -1,6 +1,7 @@
 /* The distributed mesh against the same mesh on one rank: stars, halo, measures, boundary, blocks, ways to the input.
  */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 
 /* Vertex numbers of the input for every local vertex, ghosts from their owners. */
 static PetscErrorCode InputNumbers(EqmMesh mesh, PetscInt **input)

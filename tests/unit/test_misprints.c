@@ -1,6 +1,7 @@
 /* Formulas of Liu and Yueh (disk, "000") and Yueh (square, "002") as they must read, against the library; where the
    print is wrong, that the printed form fails. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 
 /* A map, its stretch Laplacian, and the neighbours along the boundary. */
 typedef struct {

@@ -1,6 +1,7 @@
 /* Mobius maps of the sphere: conformal to rounding, a group's worth of them centred to the same map up to a rotation.
  */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 typedef struct {

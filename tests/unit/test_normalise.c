@@ -1,5 +1,6 @@
 /* Mobius maps as matrices, and the choices of one at the end of an angle-preserving map. */
 #include "support/runs.h"
+#include "mesh/mesh_private.h"
 #include "domain/projective.h"
 #include "geometry/simplex.h"
 #include <unistd.h>

@@ -1,5 +1,6 @@
 /* A mended mesh in the numbers of the file that it was made of: values of vertices and cells there and back, points. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "base/rows.h"
 #include "register/origin.h"
 

@@ -1,5 +1,6 @@
 /* The Riemann map: gradient by the boundary's angles, the loop's metric, maps that are known. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "method/loopmetric.h"
 #include "method/riemann.h"
 #include "store/map_private.h"

@@ -1,6 +1,7 @@
 /* The distributed solid and the surface around it: orientation, stars, measures, the same surface on any number of
    ranks, values carried there and back; what repair does to a solid, and a map brought back from there. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "store/map_private.h"
 
 /* Turn over the tetrahedra that `which` picks. */

@@ -1,6 +1,7 @@
 /* The sphere: moves and frames, the two measures of image triangles and the energy against differences along geodesics,
    the formulas of Sutti and Yueh (sphere, "001") as they must read, unfolding. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 #include "unfold/unfold.h"
 #include "geometry/simplex.h"
 

@@ -1,6 +1,7 @@
 /* First maps to the sphere: without folds on shapes of increasing difficulty, the same on any number of ranks, and what
    they are by definition where that is known. */
 #include "support/runs.h"
+#include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 static PetscErrorCode Start(TestMesh *test, const char *options, EqmSolver *solver)

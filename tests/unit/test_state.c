@@ -1,5 +1,6 @@
 /* States in files, the mesh that is kept beside them, and commits in the background. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 #include "base/atomicfile.h"
 #include "store/keptmesh.h"
 #include <stdlib.h>

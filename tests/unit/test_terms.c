@@ -1,5 +1,6 @@
 /* Objectives made of terms: gradients against differences, and what methods of descent make of them. */
 #include "support/runs.h"
+#include "mesh/mesh_private.h"
 #include <math.h>
 
 /* The slope of the whole objective along a geodesic from the present map, by the gradient and by differences. */

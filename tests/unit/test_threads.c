@@ -1,5 +1,6 @@
 /* The same bits for 1, 2 and 4 threads: energy, gradient, Laplacian, assembled matrix. */
 #include "support/testing.h"
+#include "domain/domain_private.h"
 #include <omp.h>
 #include <string.h>
 

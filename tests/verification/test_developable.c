@@ -1,6 +1,7 @@
 /* A rectangle rolled on a cylinder is flat inside: unrolled, and scaled along its sides, it fills the square exactly,
    with equal ratios; and that map is the minimiser of the angle energy with sliding sides, too. */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 
 /* Where the exact map takes a point of the generated patch: 4 radians by 3, corners to corners. */
 static void Unroll(const PetscReal *p, PetscReal *x)

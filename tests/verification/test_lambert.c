@@ -1,5 +1,6 @@
 /* A spherical cap has an exact area-preserving map to the disk, Lambert's: radius sin(polar / 2) / sin(opening / 2). */
 #include "support/testing.h"
+#include "mesh/mesh_private.h"
 
 static const PetscReal opening = 2.; /* polar angle of the generated cap's rim */
 

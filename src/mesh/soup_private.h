@@ -1,0 +1,23 @@
+/* The fields of a soup, read-only after creation; programs have accessors. */
+#ifndef EQM_SOUP_PRIVATE_H
+#define EQM_SOUP_PRIVATE_H
+
+#include <equimap/soup.h>
+
+struct _p_EqmSoup {
+  MPI_Comm comm;
+  PetscInt cell_size;                /* 3 triangles, 4 tetrahedra */
+  PetscInt num_vertices, num_cells;  /* global counts */
+  PetscInt vertex_start, vertex_end; /* this rank's slab of vertices, input numbering */
+  PetscInt cell_start, cell_end;     /* this rank's slab of cells, input numbering */
+  PetscReal *vertices;               /* 3 * (vertex_end - vertex_start) */
+  PetscInt *cells;                   /* cell_size * (cell_end - cell_start), input vertex numbers */
+  PetscReal *density;                /* per cell of the slab, positive, or NULL: all one */
+  PetscReal *edge_length; /* per cell of the slab and corner, of the edge opposite; NULL: edges are straight in space */
+  char file[PETSC_MAX_PATH_LEN]; /* where it came from */
+  char note[EQM_SOUP_NOTE];      /* what its reader changed, in plain words; "": nothing */
+  char *metadata;                /* what the file says beside the mesh, the same on every rank, or NULL */
+  PetscInt64 checksum;           /* CRC-32 of vertices and cells in input order, rank-independent */
+};
+
+#endif
