@@ -124,6 +124,7 @@ PetscErrorCode EqmCheckpointVisitMap(EqmState state, EqmSolver solver)
   PetscCall(EqmStateInt(state, "iteration", &solver->iterate->number));
   PetscCall(EqmStateInt64(state, "unfolded_from", &solver->iterate->unfolded_from));
   PetscCall(EqmStateInt64(state, "unfolded_to", &solver->iterate->unfolded_to));
+  PetscCall(EqmStateInt(state, "begun_again", &solver->begun_again));
   PetscCall(EqmStateBool(state, "finished", &solver->checkpoints.finished));
   PetscCall(EqmStateInt(state, "status", &status));
   PetscCall(EqmStateText(state, "message", solver->message, sizeof(solver->message)));

@@ -1,4 +1,5 @@
 #include "solver/judge.h"
+#include "solver/mend.h"
 #include "mesh/mesh_private.h"
 #include <string.h>
 
@@ -7,7 +8,7 @@ static PetscBool Stagnates(EqmSolver solver)
 {
   const PetscInt last = solver->num_history - 1, span = solver->settings.stagnation;
 
-  if (last < span) return PETSC_FALSE;
+  if (last < solver->begun_again + span) return PETSC_FALSE;
   const PetscReal then = solver->objectives[last - span], now = solver->objectives[last];
   return (PetscBool)(solver->settings.energy_rtol > 0. &&
                      then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
@@ -75,9 +76,25 @@ static PetscErrorCode ExceedsLimit(EqmSolver solver, PetscBool *stop)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode DescribeCollapse(EqmSolver solver)
+{
+  PetscFunctionBegin;
+  solver->status = EQM_STATUS_NOT_CONVERGED;
+  PetscCall(PetscStrncpy(
+      solver->message,
+      "the boundary folds on the way to the least energy: the map is the one that a barrier holds; a finer mesh, "
+      "or -repair where cells have all vertices on the boundary, may have a minimum",
+      sizeof(solver->message)));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop)
 {
   PetscFunctionBegin;
+  PetscCall(EqmSolverHasCollapsed(solver, stop));
+  solver->collapsed = *stop;
+  if (*stop) PetscCall(DescribeCollapse(solver));
+  if (*stop) PetscFunctionReturn(0);
   solver->status = EQM_STATUS_CONVERGED;
   PetscCall(MeetsTolerance(solver, stop));
   if (*stop) PetscFunctionReturn(0);

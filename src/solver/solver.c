@@ -3,6 +3,7 @@
 #include "domain/domain_private.h"
 #include "solver/inner.h"
 #include "solver/judge.h"
+#include "solver/mend.h"
 #include <string.h>
 
 PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *out)
@@ -124,29 +125,6 @@ static PetscErrorCode MapSurface(void *context, EqmMesh surface, PetscReal *x, P
 
 /* ---- set-up */
 
-/* The first map: a checkpoint's, one that was given, or a start's. */
-static PetscErrorCode MakeFirstMap(EqmSolver solver)
-{
-  const EqmDomain domain = solver->problem->domain;
-  EqmPlace *const place = &solver->iterate->place;
-
-  PetscFunctionBegin;
-  if (solver->settings.restart[0]) {
-    PetscCall(EqmCheckpointLoadMap(solver));
-  } else if (solver->first_map) {
-    PetscCheck(solver->first_map_dim == domain->dim, solver->comm, PETSC_ERR_ARG_INCOMP,
-               "a first map has the target's coordinates");
-    PetscCall(PetscArraycpy(place->x, solver->first_map, domain->dim * solver->mesh->num_owned));
-    PetscCall(EqmMeshUpdateGhosts(solver->mesh, domain->dim, place->x));
-    PetscCall(EqmPlaceMakeFrames(domain, place));
-  } else {
-    solver->settings.start.map_surface = MapSurface;
-    solver->settings.start.context = solver;
-    PetscCall(EqmStartRun(solver->start, solver->problem, solver->iterate, &solver->settings.start));
-  }
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode EqmSolverSetUp(EqmSolver solver)
 {
   const EqmLedger ledger = solver->mesh->ledger;
@@ -159,8 +137,13 @@ PetscErrorCode EqmSolverSetUp(EqmSolver solver)
   PetscCall(EqmCheckpointBegin(solver));
   solver->problem->landmarks = solver->landmarks; /* whose arrays are the problem's from here on */
   solver->landmarks = (EqmLandmarks){0};
+  solver->settings.start.map_surface = MapSurface;
+  solver->settings.start.context = solver;
   solver->is_set_up = PETSC_TRUE;
-  PetscCall(MakeFirstMap(solver));
+  if (solver->settings.restart[0])
+    PetscCall(EqmCheckpointLoadMap(solver));
+  else
+    PetscCall(EqmSolverMakeFirstMap(solver));
   if (solver->problem->landmarks.num_total > 0) PetscCall(EqmSolverCheckLandmarkSupport(solver));
   PetscCall(EqmLandmarksSetUp(&solver->problem->landmarks, solver->problem->domain));
   PetscCall(AddTerms(solver));
@@ -231,23 +214,32 @@ static PetscErrorCode Iterate(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* From a map of the solid to the ball the iterations may find a minimum that is one; else that map is the result. */
+static PetscErrorCode IterateAgain(EqmSolver solver)
+{
+  const PetscBool tried = (PetscBool)(solver->begun_again > 0); /* before a restart */
+  EqmPlace unfolded;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverBeginAgain(solver));
+  if (tried) PetscFunctionReturn(0);
+  PetscCall(EqmPlaceCreate(solver->problem->domain, &unfolded));
+  PetscCall(EqmPlaceCopy(solver->problem->domain, &solver->iterate->place, &unfolded));
+  PetscCall(Iterate(solver));
+  if (solver->collapsed) {
+    PetscCall(EqmPlaceCopy(solver->problem->domain, &unfolded, &solver->iterate->place));
+    PetscCall(EqmIterateUpdate(solver->problem, solver->iterate));
+  }
+  PetscCall(EqmPlaceDestroy(&unfolded));
+  PetscFunctionReturn(0);
+}
+
 /* The formulation's last change, and folds mended if that can be done. */
 static PetscErrorCode End(EqmSolver solver)
 {
-  const EqmFormulation *const formulation = solver->formulation;
-  EqmIterate const iterate = solver->iterate;
-  PetscBool stop = PETSC_FALSE;
-
   PetscFunctionBegin;
-  if (formulation->finish) PetscCall(formulation->finish(solver));
-  if (formulation->unfold && iterate->totals.folds > 0) PetscCall(EqmCheckpointAskedToStop(solver, &stop));
-  if (formulation->unfold && iterate->totals.folds > 0 && !stop) {
-    PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
-    PetscCall(formulation->unfold(solver->problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
-    PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
-    PetscCall(EqmIterateUpdate(solver->problem, iterate));
-    PetscCall(EqmSolverNotifyUnfolded(solver, "at the end"));
-  }
+  if (solver->formulation->finish) PetscCall(solver->formulation->finish(solver));
+  PetscCall(EqmSolverMend(solver));
   if (solver->status != EQM_STATUS_STOPPED) PetscCall(EqmJudgeFolds(solver));
   PetscFunctionReturn(0);
 }
@@ -260,6 +252,7 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
     PetscCall(EqmSolverNotifyUnfolded(solver, "at the start"));
   PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   PetscCall(Iterate(solver));
+  if (solver->collapsed) PetscCall(IterateAgain(solver));
   PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   if (solver->status != EQM_STATUS_STOPPED) PetscCall(End(solver));
   PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_END, solver->message));

@@ -47,6 +47,8 @@ struct _p_EqmSolver {
   PetscInt num_history, max_history;
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
+  PetscInt begun_again; /* the row of the history at which the iterations began once more after a collapse; 0: never */
+  PetscBool collapsed;  /* the iterations ended at no map of the solid to the ball (mend.c) */
   EqmCheckpoints checkpoints;
 
   EqmMonitor monitor;
@@ -61,6 +63,8 @@ PETSC_INTERN PetscErrorCode EqmSolverSettingsDefault(EqmSolverSettings *settings
 PETSC_INTERN PetscErrorCode EqmSolverSettle(EqmSolver solver);
 /* Read every option that the target could have. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverListOptions(EqmSolver solver);
+/* ---- first_map.c: the first map: one that was given, or a start's. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverMakeFirstMap(EqmSolver solver);
 /* ---- history.c */
 PETSC_INTERN PetscErrorCode EqmHistoryReserve(EqmSolver solver, PetscInt rows);
 /* Add a row for the present map and call the monitor. Collective. */

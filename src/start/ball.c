@@ -24,10 +24,14 @@ static PetscErrorCode Moments(EqmMesh mesh, PetscReal center[3], PetscReal covar
   PetscFunctionReturn(0);
 }
 
-/* One rotation of Jacobi's: row and column i, j of the symmetric matrix are made orthogonal, and the axes with them. */
+/* One rotation of Jacobi's: row and column i, j of the symmetric matrix are made orthogonal, and the axes with them.
+   What is off the diagonal by rounding is none: between equal axes it would choose a turn, or 0/0 where its square
+   vanishes. */
 static void JacobiRotate(PetscReal matrix[9], PetscReal axes[9], PetscInt i, PetscInt j)
 {
-  const PetscReal half = .5 * (matrix[4 * j] - matrix[4 * i]), off = matrix[3 * i + j];
+  const PetscReal half = .5 * (matrix[4 * j] - matrix[4 * i]), entry = matrix[3 * i + j];
+  const PetscReal rounding = 1e-14 * PetscSqrtReal(PetscAbsReal(matrix[4 * i] * matrix[4 * j]));
+  const PetscReal off = PetscAbsReal(entry) <= rounding ? 0. : entry;
   const PetscReal root = PetscSqrtReal(half * half + off * off);
   const PetscReal tangent = off == 0. ? 0. : off / (half >= 0. ? half + root : half - root);
   const PetscReal c = 1. / PetscSqrtReal(1. + tangent * tangent), s = tangent * c;

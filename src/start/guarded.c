@@ -3,6 +3,7 @@
 #include "start/start.h"
 #include "mesh/mesh_private.h"
 #include "unfold/unfold.h"
+#include "base/quiet.h"
 #include <stdint.h>
 
 enum { STEPS_BETWEEN = 5 };
@@ -41,6 +42,24 @@ static PetscBool IsGood(const Candidate *map)
   return (PetscBool)(map->folds == 0 && map->smallest >= EqmSmallestImage);
 }
 
+/* Where a triangle's image has vanished in rounding, the step's matrix is singular: another start is wanted then, not
+   an error. */
+static PetscErrorCode TryStep(EqmProblem problem, EqmIterate iterate, PetscInt step, PetscReal *weights,
+                              PetscBool *success)
+{
+  char message[EQM_MESSAGE_MAX];
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
+  error = EqmSphereFixedPointStep(problem, iterate, step, weights);
+  PetscCall(PetscPopErrorHandler());
+  PetscCheck(!error || error == EQM_ERR_MESH, problem->comm, error, "a fixed-point step of the start failed: %s",
+             message);
+  *success = (PetscBool)!error;
+  PetscFunctionReturn(0);
+}
+
 /* Fixed-point steps enlarge what the linear map makes too small, and fold here and there; unfolding mends what is not
    too bad. Take as few steps as lead to a good map. Where none does, the linear map was lost to rounding; that by
    equal weights knows no limb so thin. */
@@ -48,6 +67,7 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
 {
   Candidate best = {.folds = INT64_MAX};
   PetscReal *weights;
+  PetscBool success;
   EqmPlace raw;
 
   PetscFunctionBegin;
@@ -57,7 +77,8 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   PetscCall(EqmSphereLinear(problem, iterate, PETSC_FALSE));
   PetscCall(Consider(problem, iterate, &raw, &best));
   for (PetscInt k = 0; k < options->steps && !IsGood(&best); k++) {
-    PetscCall(EqmSphereFixedPointStep(problem, iterate, k, weights));
+    PetscCall(TryStep(problem, iterate, k, weights, &success));
+    if (!success) break;
     if ((k + 1) % STEPS_BETWEEN == 0) PetscCall(Consider(problem, iterate, &raw, &best));
   }
   if (!IsGood(&best)) {

@@ -83,18 +83,21 @@ PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 
   PetscInt64 folds;
   PetscReal least, start = 1., end = 1.;
   PetscBool stop = PETSC_FALSE;
+  struct _p_EqmTerm volume;
   EqmBarrier barrier;
   EqmMethod lbfgs;
 
   PetscFunctionBegin;
-  *before = iterate->totals.folds;
   PetscCall(CreateLbfgs(problem, &lbfgs));
   PetscCall(EqmPlaceCreate(problem->domain, &best.place));
   PetscCall(EqmBarrierCreate(problem, &iterate->place, &barrier));
   problem->barrier = barrier;
   PetscCall(EqmProblemAddTerm(problem, &barrier->term));
+  EqmTermInitVolume(&volume, 1.);
+  PetscCall(EqmProblemAddTerm(problem, &volume));
   barrier->weight = first_weight;
   PetscCall(Compare(problem, iterate, &best, &folds, &least));
+  *before = folds;
   barrier->epsilon = PetscMax(1., -.2 * least);
   for (PetscInt round = 0; round < MOST_ROUNDS && folds > 0 && !stop; round++) {
     PetscCall(Descend(problem, iterate, lbfgs, ROUND_STEPS, &start, &end));
@@ -110,10 +113,11 @@ PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 
   }
   PetscCall(EqmMethodDestroy(&lbfgs));
   PetscCall(EqmProblemRemoveTerm(problem, &barrier->term));
+  PetscCall(EqmProblemRemoveTerm(problem, &volume));
   PetscCall(EqmBarrierDestroy(&problem->barrier));
   PetscCall(EqmPlaceCopy(problem->domain, &best.place, &iterate->place));
   PetscCall(EqmPlaceDestroy(&best.place));
   PetscCall(EqmIterateUpdate(problem, iterate));
-  *after = iterate->totals.folds;
+  *after = best.folds;
   PetscFunctionReturn(0);
 }

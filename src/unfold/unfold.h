@@ -4,6 +4,7 @@
 #define EQM_UNFOLD_H
 
 #include "problem/problem.h"
+#include "problem/term.h"
 
 PETSC_INTERN PetscErrorCode EqmDiskUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
                                           PetscInt64 *after);
@@ -12,5 +13,9 @@ PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmProblem problem, EqmIterate itera
 /* Requests to stop are answered between rounds (EqmProblemStopRequested). */
 PETSC_INTERN PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
                                           PetscInt64 *after);
+
+/* A term weight (T - A)^2 / T for a structure of the caller's: the volume A of the image shall be the ball's, T. Not
+   collective. */
+PETSC_INTERN void EqmTermInitVolume(EqmTerm term, PetscReal weight);
 
 #endif

@@ -1,6 +1,7 @@
 /* Objectives made of terms: gradients against differences, and what methods of descent make of them. */
 #include "support/runs.h"
 #include "mesh/mesh_private.h"
+#include "unfold/unfold.h"
 #include <math.h>
 
 /* The slope of the whole objective along a geodesic from the present map, by the gradient and by differences. */
@@ -63,6 +64,25 @@ static PetscErrorCode TestGradient(EqmMesh mesh, const char *target, const char 
   PetscFunctionReturn(0);
 }
 
+/* The term that holds a solid's volume, which unfolding adds. */
+static PetscErrorCode TestVolume(void)
+{
+  struct _p_EqmTerm volume;
+  TestMesh ball;
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "blob", 300, 3, &ball));
+  PetscCall(Begin(ball.mesh, "ball", "-method lbfgs -start harmonic", PETSC_FALSE, &solver));
+  EqmTermInitVolume(&volume, 3.);
+  PetscCall(EqmProblemAddTerm(solver->problem, &volume));
+  PetscCall(TestSlope(solver, "volume"));
+  PetscCall(EqmProblemRemoveTerm(solver->problem, &volume));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&ball));
+  PetscFunctionReturn(0);
+}
+
 /* The angle energy of the map that is found; the area energy beside it. */
 static PetscErrorCode AngleError(TestMesh *test, const char *options, PetscReal *error)
 {
@@ -102,6 +122,7 @@ int main(int argc, char **argv)
   PetscCall(TestGradient(disk.mesh, "disk", "-method ncg -start tutte", PETSC_TRUE));
   PetscCall(TestGradient(disk.mesh, "disk", "-objective symmetric-dirichlet -start tutte", PETSC_TRUE));
   PetscCall(TestGradient(sphere.mesh, "sphere", "-method rgd -start guarded -balance .3", PETSC_TRUE));
+  PetscCall(TestVolume());
   PetscCall(TestAngles(&disk));
   PetscCall(TestRefused(disk.mesh, "disk", "-method lm -objective symmetric-dirichlet"));
   PetscCall(TestRefused(sphere.mesh, "sphere", "-objective symmetric-dirichlet"));
