@@ -48,14 +48,14 @@ PETSC_EXTERN PetscErrorCode EqmImageBoundaryFolds(EqmDomain domain, const EqmPla
 /* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), in a form free of cancellation) and, if wanted, its
    gradient in degrees of freedom, from dE/da = 2 (r - 1) - E/A. Where A <= 0, beyond a pole of E from where it falls
    without end, it is infinite. `a` (per local cell) is scratch that returns the image
-   measures. Counts one evaluation. Collective. */
+   measures. Collective. */
 PETSC_EXTERN PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscReal *a, PetscReal *energy,
                                               Vec gradient);
 
 /* The conformal energy E_D - A, E_D = 1/2 tr f^T L f for the Laplacian with `weights` (3 per local cell), plus |c|^2/2
    of the mass centre c = sum m_v f_v unless `mass` (per owned vertex, adding up to one) is NULL; and, if wanted, its
    gradient in degrees of freedom. `a` (per local cell) returns the image measures. Summed cell by cell, so that E_D and
-   A do not cancel as wholes. Counts one evaluation. Collective. */
+   A do not cancel as wholes. Collective. */
 PETSC_EXTERN PetscErrorCode EqmConformalEnergy(EqmDomain domain, const PetscReal *weights, const PetscReal *mass,
                                                const EqmPlace *place, PetscReal *a, PetscReal *energy, Vec gradient);
 

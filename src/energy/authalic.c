@@ -6,14 +6,11 @@ PetscErrorCode EqmAuthalicEnergy(EqmDomain domain, const EqmPlace *place, PetscR
 {
   const EqmMesh mesh = domain->mesh;
   EqmImageTotals totals;
-  EqmWork *work;
   PetscReal *slope, *ambient;
 
   PetscFunctionBegin;
   PetscCall(EqmImageMeasure(domain, place, a));
   PetscCall(EqmImageSum(mesh, a, &totals));
-  PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
-  work->evaluations++;
   *energy = totals.total > 0. ? totals.energy : INFINITY;
   if (!gradient) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(mesh->num_local_cells, &slope, domain->dim * mesh->num_owned, &ambient));

@@ -65,7 +65,6 @@ PetscErrorCode EqmConformalEnergy(EqmDomain domain, const PetscReal *weights, co
 {
   const EqmMesh mesh = domain->mesh;
   PetscReal local[3] = {0., 0., 0.}, center[3] = {0., 0., 0.}, *ambient;
-  EqmWork *work;
 
   PetscFunctionBegin;
   PetscCall(EqmImageMeasure(domain, place, a));
@@ -74,8 +73,6 @@ PetscErrorCode EqmConformalEnergy(EqmDomain domain, const PetscReal *weights, co
     local[k % domain->dim] += mass[k / domain->dim] * place->x[k];
   if (mass) PetscCall(MPIU_Allreduce(local, center, 3, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (PetscInt k = 0; k < 3; k++) *energy += .5 * center[k] * center[k];
-  PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
-  work->evaluations++;
   if (!gradient) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(domain->dim * mesh->num_owned, &ambient));
   PetscCall(AmbientGradient(domain, weights, mass, place, center, ambient));

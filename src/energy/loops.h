@@ -12,4 +12,9 @@ static inline PetscInt EqmRangeStart(PetscInt n, PetscInt b)
   return (PetscInt)((PetscInt64)n * b / EQM_NUM_RANGES);
 }
 
+/* sum over owned cells of w x^power, power 1 or 2; x per local cell. Collective. */
+PETSC_INTERN PetscErrorCode EqmWeightedSum(EqmMesh mesh, const PetscReal *x, PetscInt power, PetscReal *sum);
+/* Subtract the weighted mean. Collective. */
+PETSC_INTERN PetscErrorCode EqmRemoveWeightedMean(EqmMesh mesh, PetscReal *x);
+
 #endif

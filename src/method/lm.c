@@ -1,8 +1,8 @@
 /* Levenberg-Marquardt on log ratios with geodesic acceleration (docs/methods.md).
 
-   Minimise sum w rho^2 + (eps/T) (E_D - A): rho a residual of each cell's ratio, T the target's measure, E_D - A the
-   angle energy (E_D with the mesh's cotangents). With eps = 0, rho = log(a/w) less its weighted mean; with eps > 0, rho
-   = r - 1 above one and log r below, r = (a/w)/A, which reaches the minimum straight from a Tutte map.
+   Minimise sum w rho^2 + (1/T) (the problem's added terms): rho a residual of each cell's ratio (problem/residual.h), T
+   the target's measure. As rho is about r - 1 near the minimum, the first sum is about E/T there, so that terms have
+   the same weight as beside E. On the sphere a term of the method's own, whose weight fades, keeps triangles upright.
 
    One iteration: the coupled Gauss-Newton matrix plus mu M, where M is an elastic metric weighted by the present
    residual (stiff where the map is wrong, loose where it is right), is factored once and solved three times: for the
@@ -24,7 +24,7 @@ static const PetscReal inexact = 1e-2;
  */
 static void AdaptDamping(EqmLm *lm, PetscReal t)
 {
-  const PetscBool sphere = (PetscBool)(lm->lean_rate != NULL);
+  const PetscBool sphere = (PetscBool)(lm->upright != NULL);
 
   if (t >= .99)
     lm->mu *= sphere ? .3 : .5;
@@ -37,18 +37,29 @@ static void AdaptDamping(EqmLm *lm, PetscReal t)
   lm->mu = PetscMax(lm->mu, least_damping);
 }
 
-/* Sphere: the barrier gives way when it is a large part of the objective and not needed to keep steps long, or when it
-   is what the residual is in balance with: a minimum of the sum is not yet one of the residual. */
-static void AdaptBarrier(EqmMethod method, PetscReal t, PetscReal old_squares)
+/* The weight of the upright term. */
+static void SetKappa(EqmLm *lm, PetscReal kappa)
+{
+  lm->kappa = kappa;
+  if (lm->upright) lm->upright->weight = kappa / lm->term_scale;
+}
+
+/* Sphere: the weight of the upright term falls when the term is a large part of the objective and not needed to keep
+   steps long, or when the residual is in balance with it: a minimum of the sum is not yet one of the residual. */
+static PetscErrorCode AdaptUpright(EqmMethod method, PetscReal t, PetscReal old_squares)
 {
   EqmLm *const lm = method->data;
+  PetscReal kappa = lm->kappa, part = 0.;
 
-  while (t > .2 && lm->kappa * lm->now.barrier > .1 * lm->now.squares &&
-         lm->kappa > PETSC_MACHINE_EPSILON * PETSC_MACHINE_EPSILON) {
-    lm->kappa *= .3;
-  }
-  if (lm->now.squares > .97 * old_squares) lm->kappa *= .01;
-  EqmLmWeigh(method, &lm->now);
+  PetscFunctionBegin;
+  PetscCall(lm->upright->add(lm->upright, method->problem, &lm->now.place, lm->now.image, &part, NULL));
+  part *= lm->term_scale / kappa;
+  while (t > .2 && kappa * part > .1 * lm->now.squares && kappa > PETSC_MACHINE_EPSILON * PETSC_MACHINE_EPSILON)
+    kappa *= .3;
+  if (lm->now.squares > .97 * old_squares) kappa *= .01;
+  SetKappa(lm, kappa);
+  PetscCall(EqmLmAddTerms(method, &lm->now));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
@@ -58,7 +69,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   PetscReal t = 0.;
 
   PetscFunctionBegin;
-  if (lm->epsilon > 0.) { /* the level follows the total area from one iteration to the next */
+  if (!lm->residual->without_mean) { /* the level follows the total area from one iteration to the next */
     lm->level = PetscLogReal(iterate->totals.total);
     PetscCall(EqmLmEvaluate(method, &lm->now));
   }
@@ -71,7 +82,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
     if (success) {
       PetscCall(EqmLmSolveForCurve(method, &ratio));
       PetscCall(EqmLmPredictedDecrease(method, &predicted));
-      if (lm->epsilon > 0. && predicted <= 1e-12 * lm->now.objective) { /* what is left is rounding */
+      if (!lm->residual->without_mean && predicted <= 1e-12 * lm->now.objective) { /* what is left is rounding */
         *outcome = EQM_STEP_CONVERGED;
         PetscFunctionReturn(0);
       }
@@ -84,7 +95,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   AdaptDamping(lm, t);
   EqmLmSwap(&lm->now, &lm->best);
   PetscCall(EqmLmInnerSteps(method, iterate));
-  if (lm->kappa > 0.) AdaptBarrier(method, t, old_squares);
+  if (lm->kappa > 0.) PetscCall(AdaptUpright(method, t, old_squares));
   PetscCall(EqmIterateAccept(method->problem, iterate, &lm->now.place, lm->now.image, lm->now.objective, t));
   *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
@@ -101,6 +112,11 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
                                    "lm: at most so many quasi-Newton steps on each factor; with 0 a map takes more "
                                    "factorisations, and hardly magnifies the rounding of the input",
                                    "EqmSolverSetFromOptions", lm->most_inner, &lm->most_inner, NULL, 0));
+  PetscCall(PetscOptionsString("-lm_residual",
+                               "lm: what is squared of each ratio r: log (of r, less its mean), mixed (r - 1 where r > "
+                               "1, else log r), ratio (r - 1), or auto: mixed beside the angle energy, else log",
+                               "EqmSolverSetFromOptions", lm->residual_name, lm->residual_name,
+                               sizeof(lm->residual_name), NULL));
   PetscFunctionReturn(0);
 }
 
@@ -111,13 +127,6 @@ PetscErrorCode EqmLmSetInnerSteps(EqmMethod method, PetscInt steps)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmLmSetBalance(EqmMethod method, PetscReal epsilon)
-{
-  PetscFunctionBegin;
-  ((EqmLm *)method->data)->epsilon = epsilon;
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode TrialCreate(EqmMethod method, EqmTrial *trial)
 {
   const PetscInt n = method->problem->mesh->num_local_cells;
@@ -125,7 +134,6 @@ static PetscErrorCode TrialCreate(EqmMethod method, EqmTrial *trial)
   PetscFunctionBegin;
   PetscCall(EqmPlaceCreate(method->problem->domain, &trial->place));
   PetscCall(PetscMalloc2(n, &trial->image, n, &trial->residual));
-  if (method->problem->domain->curved_image) PetscCall(PetscMalloc2(n, &trial->half_det, n, &trial->lean));
   PetscFunctionReturn(0);
 }
 
@@ -134,7 +142,6 @@ static PetscErrorCode TrialDestroy(EqmTrial *trial)
   PetscFunctionBegin;
   PetscCall(EqmPlaceDestroy(&trial->place));
   PetscCall(PetscFree2(trial->image, trial->residual));
-  PetscCall(PetscFree2(trial->half_det, trial->lean));
   PetscFunctionReturn(0);
 }
 
@@ -152,8 +159,6 @@ static PetscErrorCode MakeRoom(EqmMethod method)
   PetscCall(PetscMalloc3(num_cells, &lm->rate, num_cells, &lm->bend, num_cells, &lm->slope));
   PetscCall(PetscMalloc3(dim * mesh->num_local, &lm->velocity, dim * mesh->num_local, &lm->acceleration,
                          dim * mesh->num_owned, &lm->ambient));
-  if (method->problem->domain->curved_image)
-    PetscCall(PetscMalloc2(num_cells, &lm->lean_rate, num_cells, &lm->lean_bend));
   PetscCall(EqmDomainCreateVec(method->problem->domain, &lm->descent));
   PetscCall(VecDuplicate(lm->descent, &lm->mean));
   PetscCall(VecDuplicate(lm->descent, &lm->step));
@@ -162,6 +167,7 @@ static PetscErrorCode MakeRoom(EqmMethod method)
   PetscCall(VecDuplicate(lm->descent, &lm->solved_mean));
   PetscCall(VecDuplicate(lm->descent, &lm->old_descent));
   PetscCall(VecDuplicate(lm->descent, &lm->direction));
+  PetscCall(VecDuplicate(lm->descent, &lm->part));
   PetscCall(EqmPairsCreate(lm->descent, MEMORY, &lm->pairs));
   PetscFunctionReturn(0);
 }
@@ -185,6 +191,23 @@ static PetscErrorCode TakeStart(EqmMethod method, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
+/* The one that the user wants, or the one that suits the problem's terms. */
+static PetscErrorCode ChooseResidual(EqmMethod method)
+{
+  EqmLm *const lm = method->data;
+  PetscBool is_auto, has_angle = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(lm->residual_name, "auto", &is_auto));
+  for (EqmTerm term = method->problem->terms; term && !has_angle; term = term->next)
+    PetscCall(PetscStrcmp(term->name, "angle", &has_angle));
+  if (is_auto)
+    lm->residual = has_angle ? &EqmResidualMixed : &EqmResidualLog;
+  else
+    PetscCall(EqmResidualFind(method->comm, lm->residual_name, &lm->residual));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
   EqmLm *const lm = method->data;
@@ -192,22 +215,24 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 
   PetscFunctionBegin;
   lm->mu = 1.;
-  lm->angle_weight = lm->epsilon / problem->domain->target_measure;
-  lm->kappa = problem->domain->curved_image ? 1. : 0.;
+  lm->term_scale = 1. / problem->domain->target_measure;
+  PetscCall(ChooseResidual(method));
+  lm->level = lm->residual->without_mean ? 0. : PetscLogReal(iterate->totals.total);
+  SetKappa(lm, 0.);
+  if (problem->domain->curved_image) {
+    PetscCall(EqmTermCreateUpright(problem, 1., &lm->upright));
+    PetscCall(EqmProblemAddTerm(problem, lm->upright));
+    SetKappa(lm, 1.);
+  }
   PetscCall(EqmProblemCreateLinear(problem, EQM_MATRIX_COUPLED, &lm->linear));
   PetscCall(EqmLinearSetInexact(lm->linear, inexact));
   PetscCall(MakeRoom(method));
   PetscCall(VecSet(lm->mean, 0.)); /* where the residual has no mean it stays so */
-  if (lm->epsilon > 0.) {
-    PetscCall(PetscMalloc1(3 * problem->mesh->num_local_cells, &lm->laplacian));
-    PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_COTANGENT, NULL, lm->laplacian));
-    lm->level = PetscLogReal(iterate->totals.total);
-  }
   PetscCall(TakeStart(method, iterate));
   PetscFunctionReturn(0);
 }
 
-/* The factor and the pairs do not outlive an iteration. The objective follows the barrier's weight. */
+/* The factor and the pairs do not outlive an iteration. The objective depends on the upright term's weight. */
 static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
   EqmLm *const lm = method->data;
@@ -215,7 +240,9 @@ static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state
   PetscFunctionBegin;
   PetscCall(EqmStateReal(state, "damping", &lm->mu));
   PetscCall(EqmStateReal(state, "barrier_weight", &lm->kappa));
-  if (EqmStateIsLoading(state)) EqmLmWeigh(method, &lm->now);
+  if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
+  SetKappa(lm, lm->kappa);
+  PetscCall(EqmLmAddTerms(method, &lm->now));
   PetscFunctionReturn(0);
 }
 
@@ -225,13 +252,16 @@ static PetscErrorCode Reset(EqmMethod method)
 
   PetscFunctionBegin;
   PetscCall(EqmLinearDestroy(&lm->linear));
+  if (lm->upright) {
+    PetscCall(EqmProblemRemoveTerm(method->problem, lm->upright));
+    PetscCall(lm->upright->destroy(lm->upright));
+    lm->upright = NULL;
+  }
   PetscCall(TrialDestroy(&lm->now));
   PetscCall(TrialDestroy(&lm->best));
   PetscCall(TrialDestroy(&lm->attempt));
   PetscCall(PetscFree3(lm->rate, lm->bend, lm->slope));
   PetscCall(PetscFree3(lm->velocity, lm->acceleration, lm->ambient));
-  PetscCall(PetscFree2(lm->lean_rate, lm->lean_bend));
-  PetscCall(PetscFree(lm->laplacian));
   PetscCall(VecDestroy(&lm->descent));
   PetscCall(VecDestroy(&lm->mean));
   PetscCall(VecDestroy(&lm->step));
@@ -240,6 +270,7 @@ static PetscErrorCode Reset(EqmMethod method)
   PetscCall(VecDestroy(&lm->solved_mean));
   PetscCall(VecDestroy(&lm->old_descent));
   PetscCall(VecDestroy(&lm->direction));
+  PetscCall(VecDestroy(&lm->part));
   PetscCall(EqmPairsDestroy(&lm->pairs));
   PetscFunctionReturn(0);
 }
@@ -251,9 +282,10 @@ PetscErrorCode EqmMethodCreateLm(EqmMethod method)
   PetscFunctionBegin;
   PetscCall(PetscNew(&lm));
   lm->most_inner = 100;
+  PetscCall(PetscStrncpy(lm->residual_name, "auto", sizeof(lm->residual_name)));
   method->data = lm;
   method->purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration";
-  method->takes_landmarks = PETSC_TRUE;
+  method->takes_terms = method->needs_ratios = PETSC_TRUE;
   method->ops =
       (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);

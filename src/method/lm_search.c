@@ -37,14 +37,15 @@ static PetscErrorCode TryAt(EqmMethod method, PetscReal t, PetscBool bent, Petsc
 PetscErrorCode EqmLmSearch(EqmMethod method, PetscReal ratio, PetscReal predicted, PetscReal *best_t)
 {
   EqmLm *const lm = method->data;
-  const PetscReal share = lm->epsilon > 0. ? .1 : .3;
+  const PetscBool is_log = lm->residual->without_mean;
+  const PetscReal share = is_log ? .3 : .1;
   PetscReal t = ratio < 1. ? 1. : 1. / ratio, objective;
 
   PetscFunctionBegin;
   *best_t = 0.;
   for (PetscInt halving = 0; halving < MOST_HALVINGS; halving++, t *= .5) {
     PetscCall(TryAt(method, t, PETSC_TRUE, best_t, &objective));
-    if (ratio >= 1. || halving >= 2 || lm->epsilon > 0.) PetscCall(TryAt(method, t, PETSC_FALSE, best_t, &objective));
+    if (ratio >= 1. || halving >= 2 || !is_log) PetscCall(TryAt(method, t, PETSC_FALSE, best_t, &objective));
     if (*best_t > 0. &&
         (objective > lm->best.objective || lm->best.objective < lm->now.objective - share * t * predicted))
       break;

@@ -40,8 +40,10 @@ struct _p_EqmMethod {
   EqmMethodOps ops;
   EqmProblem problem;    /* NULL before EqmMethodSetUp */
   EqmIterate iterate;    /* the one that is worked on, for callbacks */
-  PetscBool takes_terms; /* it minimises EqmProblemEvaluate, whatever the objective consists of */
-  PetscBool takes_landmarks, is_set_up;
+  PetscBool takes_terms; /* it minimises the problem's added terms with the leading one */
+  /* What the leading term must have: be least where all ratios are one; second derivatives. */
+  PetscBool needs_ratios, needs_hessian;
+  PetscBool is_set_up;
   void *data;                    /* the method's own: settings and work space */
   char message[EQM_MESSAGE_MAX]; /* why there is no further step; empty: nothing special */
 };
@@ -91,7 +93,5 @@ PETSC_INTERN PetscErrorCode EqmLbfgsSetLineSearch(EqmMethod lbfgs, EqmLbfgsLineS
 PETSC_INTERN PetscErrorCode EqmLbfgsRestart(EqmMethod lbfgs, EqmIterate iterate);
 /* At most so many quasi-Newton steps on each factor. */
 PETSC_INTERN PetscErrorCode EqmLmSetInnerSteps(EqmMethod lm, PetscInt steps);
-/* Weight of the angle energy beside the area energy; 0: none. */
-PETSC_INTERN PetscErrorCode EqmLmSetBalance(EqmMethod lm, PetscReal epsilon);
 
 #endif

@@ -1,6 +1,5 @@
-/* Newton's method on the normalised isovolumetric energy, damped after Levenberg and Marquardt in the metric of the
-   stretch Laplacian. The matrix is the exact Hessian of sum a^2/(w A) - A but for the two rank-one terms by which the
-   total volume couples everything; on the ball the total hardly changes. */
+/* Newton's method on an objective with second derivatives and its terms, damped after Levenberg and Marquardt in the
+   objective's metric. */
 #include "method/method.h"
 #include "domain/domain_private.h"
 #include "energy/curvature.h"
@@ -12,7 +11,7 @@ static const PetscReal diagonal_share = 1e-8;
 typedef struct {
   EqmLinear linear;
   PetscReal mu;
-  PetscReal *slope, *weights; /* dE/da per local cell; the stretch Laplacian */
+  PetscReal *weights, *mass; /* of the metric's Laplacian; the mass is left out */
   PetscReal *image, *velocity;
   EqmPlace trial;
   Vec gradient, trial_gradient, step;
@@ -27,14 +26,15 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscFunctionBegin;
   newton->mu = 1e-2;
   PetscCall(EqmProblemCreateLinear(method->problem, EQM_MATRIX_COUPLED, &newton->linear));
-  PetscCall(PetscMalloc4(mesh->num_local_cells, &newton->slope,
-                         EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &newton->weights,
-                         mesh->num_local_cells, &newton->image, domain->dim * mesh->num_local, &newton->velocity));
+  PetscCall(PetscMalloc4(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &newton->weights,
+                         mesh->num_local_cells, &newton->mass, mesh->num_local_cells, &newton->image,
+                         domain->dim * mesh->num_local, &newton->velocity));
   PetscCall(EqmPlaceCreate(domain, &newton->trial));
   PetscCall(EqmDomainCreateVec(domain, &newton->gradient));
   PetscCall(VecDuplicate(newton->gradient, &newton->trial_gradient));
   PetscCall(VecDuplicate(newton->gradient, &newton->step));
-  PetscCall(EqmAuthalicEnergy(domain, &iterate->place, iterate->image, &iterate->objective, newton->gradient));
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &iterate->place, iterate->image, &iterate->objective,
+                               newton->gradient));
   PetscCall(VecNorm(newton->gradient, NORM_2, &iterate->gradient_norm));
   PetscFunctionReturn(0);
 }
@@ -45,7 +45,7 @@ static PetscErrorCode Reset(EqmMethod method)
 
   PetscFunctionBegin;
   PetscCall(EqmLinearDestroy(&newton->linear));
-  PetscCall(PetscFree4(newton->slope, newton->weights, newton->image, newton->velocity));
+  PetscCall(PetscFree4(newton->weights, newton->mass, newton->image, newton->velocity));
   PetscCall(EqmPlaceDestroy(&newton->trial));
   PetscCall(VecDestroy(&newton->gradient));
   PetscCall(VecDestroy(&newton->trial_gradient));
@@ -57,35 +57,18 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 {
   const EqmMethod method = context;
   const EqmIterate iterate = method->iterate;
-  const EqmMesh mesh = method->problem->mesh;
+  const EqmProblem problem = method->problem;
+  const EqmMesh mesh = problem->mesh;
   const Newton *const newton = method->data;
-  const PetscReal scale = 2. / (mesh->weight[cell] * iterate->totals.total);
   PetscReal laplacian[4][4];
   EqmCellDerivatives d;
 
-  EqmCellDifferentiate(method->problem->domain, &iterate->place, cell, &d);
+  EqmCellDifferentiate(problem->domain, &iterate->place, cell, &d);
   EqmCellLaplacian(mesh->cell_size, newton->weights + EqmCellNumEdges(mesh->cell_size) * cell, laplacian);
   for (PetscInt a = 0; a < mesh->cell_size; a++) laplacian[a][a] *= 1. + diagonal_share;
-  for (PetscInt i = 0; i < d.frame.count; i++) {
-    for (PetscInt j = 0; j < d.frame.count; j++)
-      matrix[d.frame.count * i + j] = scale * d.first[i] * d.first[j] + newton->slope[cell] * d.second[i][j];
-  }
+  problem->objective->set_hessian(problem, iterate, cell, &d, matrix);
+  EqmTermsAddMatrix(problem, &iterate->place, iterate->image, cell, &d.frame, 2., matrix);
   EqmCellFrameAddLaplacian(&d.frame, newton->mu, laplacian, matrix);
-}
-
-/* Slopes and metric at the present map. */
-static PetscErrorCode Linearise(EqmMethod method, EqmIterate iterate)
-{
-  Newton *const newton = method->data;
-  const EqmImageTotals *const totals = &iterate->totals;
-
-  PetscFunctionBegin;
-  for (PetscInt c = 0; c < method->problem->mesh->num_local_cells; c++) {
-    newton->slope[c] = 2. * (iterate->image[c] / (method->problem->mesh->weight[c] * totals->total) - 1.) -
-                       totals->energy / totals->total;
-  }
-  PetscCall(EqmLaplacianWeights(method->problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, newton->weights));
-  PetscFunctionReturn(0);
 }
 
 /* (H + mu M) p = -g; what the quadratic model without the damping promises. An iteration finds only here that a matrix
@@ -129,9 +112,11 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
 {
   Newton *const newton = method->data;
   PetscReal promised, energy;
+  PetscBool with_mass;
 
   PetscFunctionBegin;
-  PetscCall(Linearise(method, iterate));
+  PetscCall(
+      method->problem->objective->metric(method->problem, &iterate->place, newton->weights, newton->mass, &with_mass));
   *outcome = EQM_STEP_STALLED;
   for (PetscInt damping = 0; damping < MOST_DAMPINGS; damping++, newton->mu = PetscMax(4. * newton->mu, 1e-10)) {
     PetscBool success;
@@ -144,7 +129,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
     }
     PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, 1., newton->step, &newton->trial));
     PetscCall(
-        EqmAuthalicEnergy(method->problem->domain, &newton->trial, newton->image, &energy, newton->trial_gradient));
+        EqmProblemEvaluate(method->problem, iterate, &newton->trial, newton->image, &energy, newton->trial_gradient));
     const PetscReal gain = (iterate->objective - energy) / promised;
     if (!(gain > 1e-4)) continue;
     PetscCall(AcceptTrial(method, iterate, energy, gain));
@@ -172,6 +157,7 @@ PetscErrorCode EqmMethodCreateNewton(EqmMethod method)
   method->data = newton;
   method->purpose =
       "damped Newton steps with the exact Hessian: a coupled factorisation each, for up to 100,000 vertices";
+  method->takes_terms = method->needs_hessian = PETSC_TRUE;
   method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);
 }

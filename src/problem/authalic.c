@@ -38,10 +38,26 @@ static PetscErrorCode StretchMetric(EqmProblem problem, const EqmPlace *place, P
   PetscFunctionReturn(0);
 }
 
+/* The Hessian of sum a^2/(w A) - A but for two rank-one terms by which A couples all cells; A hardly changes. */
+static void SetHessian(EqmProblem problem, EqmIterate iterate, PetscInt cell, const EqmCellDerivatives *d,
+                       PetscReal *matrix)
+{
+  const EqmImageTotals *const totals = &iterate->totals;
+  const PetscReal share = problem->mesh->weight[cell] * totals->total, scale = 2. / share;
+  const PetscReal slope = 2. * (iterate->image[cell] / share - 1.) - totals->energy / totals->total;
+
+  for (PetscInt i = 0; i < d->frame.count; i++) {
+    for (PetscInt j = 0; j < d->frame.count; j++)
+      matrix[d->frame.count * i + j] = scale * d->first[i] * d->first[j] + slope * d->second[i][j];
+  }
+}
+
 /* A poor map has ratios off by half, root mean square: that is none of equal areas. */
 const EqmObjective EqmObjectiveAuthalic = {.name = "authalic",
                                            .sum = EqmSumMeasures,
                                            .poor_energy = .25,
                                            .evaluate = Evaluate,
+                                           .set_hessian = SetHessian,
+                                           .of_ratios = PETSC_TRUE,
                                            .metric = StretchMetric,
                                            .inverse_scale = .5};

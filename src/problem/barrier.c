@@ -67,43 +67,6 @@ PetscErrorCode EqmBarrierDestroy(EqmBarrier *barrier)
   PetscFunctionReturn(0);
 }
 
-EqmBarrierTerm EqmBarrierOfCell(EqmBarrier barrier, PetscReal ratio, PetscReal stretch)
-{
-  const PetscReal eps = barrier->epsilon, root = PetscSqrtReal(eps * eps + ratio * ratio);
-  const PetscReal chi = ratio > 0. ? .5 * (ratio + root) : .5 * eps * eps / (root - ratio);
-  const PetscReal first = chi / root, second = .5 * eps * eps / (root * root * root), half = .5 * (1. + ratio * ratio);
-  const PetscReal power = PetscPowReal(chi, -2. / 3.), shape = barrier->shape_weight * power / 3.;
-  const PetscReal relative = first / chi, bend = second / chi;
-
-  return (
-      EqmBarrierTerm){.value = barrier->weight * half / chi + shape * stretch,
-                      .first = barrier->weight * (ratio - half * relative) / chi - 2. / 3. * shape * stretch * relative,
-                      .second = barrier->weight *
-                                    (1. - 2. * ratio * relative - half * bend + 2. * half * relative * relative) / chi +
-                                shape * stretch * (10. / 9. * relative * relative - 2. / 3. * bend),
-                      .by_stretch = shape};
-}
-
-PetscReal EqmBarrierStretch(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt cell)
-{
-  const PetscInt *const v = mesh->cells + 4 * cell;
-  PetscReal sum = 0.;
-
-  for (PetscInt e = 0; e < 6; e++) {
-    PetscInt i, j;
-    EqmCellEdge(4, e, &i, &j);
-    for (PetscInt k = 0; k < 3; k++) sum += barrier->edge[6 * cell + e] * PetscSqr(x[3 * v[i] + k] - x[3 * v[j] + k]);
-  }
-  return sum;
-}
-
-PetscReal EqmBarrierFacetRatio(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt facet)
-{
-  const PetscInt *const v = mesh->boundary_facets + 3 * facet;
-
-  return EqmHalfDet(x + 3 * v[0], x + 3 * v[1], x + 3 * v[2]) / (3. * barrier->share[facet] * barrier->total);
-}
-
 /* Cells: the value, slopes by the volumes and by the edges. */
 static PetscReal AddCells(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, const PetscReal *image)
 {
@@ -140,11 +103,11 @@ static PetscReal AddBoundary(EqmBarrier barrier, EqmMesh mesh, const PetscReal *
   return sum / barrier->num_facets;
 }
 
-PetscErrorCode EqmBarrierAdd(EqmProblem problem, const EqmPlace *place, const PetscReal *image, PetscReal *value,
-                             Vec gradient)
+static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image,
+                          PetscReal *value, Vec gradient)
 {
   const EqmMesh mesh = problem->mesh;
-  const EqmBarrier barrier = problem->barrier;
+  const EqmBarrier barrier = (EqmBarrier)term;
   PetscReal local, sum;
   Vec part;
 
@@ -164,15 +127,6 @@ PetscErrorCode EqmBarrierAdd(EqmProblem problem, const EqmPlace *place, const Pe
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AddTerm(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image,
-                              PetscReal *value, Vec gradient)
-{
-  PetscFunctionBegin;
-  (void)term;
-  PetscCall(EqmBarrierAdd(problem, place, image, value, gradient));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode EqmBarrierCreate(EqmProblem problem, const EqmPlace *place, EqmBarrier *out)
 {
   const EqmMesh mesh = problem->mesh;
@@ -181,7 +135,7 @@ PetscErrorCode EqmBarrierCreate(EqmProblem problem, const EqmPlace *place, EqmBa
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&barrier));
-  barrier->term = (struct _p_EqmTerm){.name = "barrier", .weight = 1., .add = AddTerm};
+  barrier->term = (struct _p_EqmTerm){.name = "barrier", .weight = 1., .add = Add, .add_matrix = EqmBarrierAddMatrix};
   barrier->total = problem->domain->target_measure;
   PetscCall(PetscMalloc3(mesh->num_boundary_facets, &barrier->share, mesh->num_boundary_facets, &barrier->counts, 4 * n,
                          &barrier->facet_of));
@@ -198,10 +152,10 @@ PetscErrorCode EqmBarrierCreate(EqmProblem problem, const EqmPlace *place, EqmBa
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmBarrierInspect(EqmProblem problem, EqmIterate iterate, PetscReal *least, PetscInt64 *folds)
+PetscErrorCode EqmBarrierInspect(EqmBarrier barrier, EqmProblem problem, EqmIterate iterate, PetscReal *least,
+                                 PetscInt64 *folds)
 {
   const EqmMesh mesh = problem->mesh;
-  const EqmBarrier barrier = problem->barrier;
   PetscReal smallest = INFINITY;
   PetscInt64 count = 0;
 

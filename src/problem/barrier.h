@@ -6,6 +6,7 @@
 #include "problem/term.h"
 #include "energy/cellframe.h"
 
+typedef struct _p_EqmBarrier *EqmBarrier;
 struct _p_EqmBarrier {
   struct _p_EqmTerm term;         /* without a weight of its own */
   PetscReal weight, shape_weight; /* lambda and sigma */
@@ -35,17 +36,11 @@ PETSC_INTERN EqmBarrierTerm EqmBarrierOfCell(EqmBarrier barrier, PetscReal ratio
 PETSC_INTERN PetscReal EqmBarrierStretch(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt cell);
 /* Volume of the cell between the origin and a boundary facet over what it should be. Not collective. */
 PETSC_INTERN PetscReal EqmBarrierFacetRatio(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt facet);
-/* Add the value of the problem's barrier and, unless NULL, gradient; `image` holds the measures at `place`. Collective.
- */
-PETSC_INTERN PetscErrorCode EqmBarrierAdd(EqmProblem problem, const EqmPlace *place, const PetscReal *image,
-                                          PetscReal *value, Vec gradient);
 /* The smallest ratio of cells and boundary facets of an iterate, and how many of both are folded. Collective. */
-PETSC_INTERN PetscErrorCode EqmBarrierInspect(EqmProblem problem, EqmIterate iterate, PetscReal *least,
-                                              PetscInt64 *folds);
-
-/* What it adds to the metric's matrix of a cell at a place whose measures `image` has: A/2 times its Hessian as far as
-   that is positive, in the degrees of freedom of the corners (barrier_metric.c). Not collective. */
-PETSC_INTERN void EqmBarrierAddMatrix(EqmProblem problem, const EqmPlace *place, const PetscReal *image, PetscInt cell,
-                                      const EqmCellFrame *frame, PetscReal *matrix);
+PETSC_INTERN PetscErrorCode EqmBarrierInspect(EqmBarrier barrier, EqmProblem problem, EqmIterate iterate,
+                                              PetscReal *least, PetscInt64 *folds);
+/* The term's add_matrix (barrier_cell.c). Not collective. */
+PETSC_INTERN void EqmBarrierAddMatrix(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image,
+                                      PetscInt cell, const EqmCellFrame *frame, PetscReal factor, PetscReal *matrix);
 
 #endif

@@ -40,7 +40,7 @@ static PetscErrorCode MakeShares(EqmLandmarks *landmarks, EqmMesh mesh)
   for (PetscInt k = 0; k < mesh->cell_size * mesh->num_local_cells; k++) cells_around[mesh->cells[k]]++;
   for (PetscInt i = 0; i < landmarks->num; i++) {
     const PetscInt v = landmarks->vertex[i];
-    landmarks->share[v] += landmarks->weight / cells_around[v];
+    landmarks->share[v] += 1. / cells_around[v];
   }
   PetscCall(PetscFree(cells_around));
   PetscFunctionReturn(0);
@@ -55,7 +55,6 @@ PetscErrorCode EqmLandmarksSetUp(EqmLandmarks *landmarks, EqmDomain domain)
   PetscFunctionBegin;
   if (landmarks->num_total == 0) PetscFunctionReturn(0);
   PetscCheck(dim == domain->dim, mesh->comm, PETSC_ERR_ARG_INCOMP, "landmarks have the target's coordinates");
-  landmarks->weight = landmarks->lambda / domain->target_measure;
   PetscCall(PetscMalloc1(landmarks->num_total, &landmarks->vertex));
   PetscCall(PetscMalloc1(dim * landmarks->num_total, &landmarks->place));
   PetscCall(PetscMalloc1(landmarks->num_total, &local));

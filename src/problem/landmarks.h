@@ -16,8 +16,7 @@ typedef struct {
   PetscInt num;     /* of vertices that this rank owns */
   PetscInt *vertex; /* local numbers */
   PetscReal *place; /* dim each */
-  PetscReal weight; /* lambda over the target's measure */
-  PetscReal *share; /* per owned vertex: weight over the number of its cells, 0 where it is no landmark */
+  PetscReal *share; /* per local vertex: landmarks there that are this rank's over the number of its cells */
 } EqmLandmarks;
 
 PETSC_INTERN PetscErrorCode EqmLandmarksGive(EqmLandmarks *landmarks, PetscInt num, PetscInt dim,

@@ -9,7 +9,7 @@
 #include "energy/cellframe.h"
 #include "problem/objective.h"
 #include "geometry/simplex.h"
-#include "problem/barrier.h"
+#include "problem/term.h"
 
 struct _p_EqmMetric {
   EqmProblem problem;
@@ -79,15 +79,15 @@ PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
 typedef struct {
   EqmProblem problem;
   const EqmPlace *place;
-  const PetscReal *image;   /* measures there; NULL without a barrier */
+  const PetscReal *image;   /* measures there; NULL where the objective has no added terms */
   const PetscReal *weights; /* of L_V */
 } GaussNewton;
 
 /* Of L_V in the metric of the ball. */
 static const PetscReal l_v_share = .05;
 
-/* Half of the energy's Hessian times A without the curvature of the cells, da da^T / w, and a share of L_V in each
-   coordinate, which keeps it definite. */
+/* Half of the objective's Hessian times A without the curvature of the cells: da da^T / w of the energy, a share of L_V
+   in each coordinate, which keeps it definite, and the matrices of the added terms. */
 static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
 {
   const GaussNewton *const gn = context;
@@ -103,7 +103,7 @@ static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
   EqmCellFrameAddSquare(&frame, 1. / domain->mesh->weight[cell], gradient, matrix);
   EqmCellLaplacian(4, gn->weights + 6 * cell, laplacian);
   EqmCellFrameAddLaplacian(&frame, l_v_share, laplacian, matrix);
-  if (gn->image) EqmBarrierAddMatrix(gn->problem, gn->place, gn->image, cell, &frame, matrix);
+  EqmTermsAddMatrix(gn->problem, gn->place, gn->image, cell, &frame, domain->target_measure, matrix);
 }
 
 /* Without compression, and the smoothest that there are. Rotations cost a third more per cycle and save less. */
@@ -121,7 +121,7 @@ static PetscErrorCode FactorGaussNewton(EqmMetric metric, const EqmPlace *place)
   PetscBool success;
 
   PetscFunctionBegin;
-  if (problem->barrier) {
+  if (problem->terms) {
     PetscCall(PetscMalloc1(problem->mesh->num_local_cells, &image));
     PetscCall(EqmImageMeasure(problem->domain, place, image));
     gn.image = image;
@@ -134,7 +134,7 @@ static PetscErrorCode FactorGaussNewton(EqmMetric metric, const EqmPlace *place)
   PetscFunctionReturn(0);
 }
 
-/* Factor what belongs to a map. The barrier's matrices change too much for common coarse spaces. */
+/* Factor what belongs to a map. The matrices of added terms change too much for common coarse spaces. */
 static PetscErrorCode FactorAt(EqmMetric metric, const EqmPlace *place)
 {
   const EqmProblem problem = metric->problem;
@@ -150,7 +150,7 @@ static PetscErrorCode FactorAt(EqmMetric metric, const EqmPlace *place)
       PetscCall(EqmGroupFactor(problem, metric->weights, metric->group, with_mass ? metric->mass : NULL));
     problem->holds_fixed_metric = fixed;
   }
-  metric->keeps_coarse = (PetscBool)(metric->gauss_newton && !problem->barrier);
+  metric->keeps_coarse = (PetscBool)(metric->gauss_newton && !problem->terms);
   PetscFunctionReturn(0);
 }
 

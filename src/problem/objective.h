@@ -4,6 +4,7 @@
 #define EQM_OBJECTIVE_H
 
 #include "problem/problem.h"
+#include "energy/curvature.h"
 
 struct EqmObjective {
   const char *name;
@@ -12,9 +13,13 @@ struct EqmObjective {
   PetscErrorCode (*sum)(EqmProblem, EqmIterate);
   PetscReal poor_energy; /* a stagnating map with more than this, per target measure, is no success; 0: any may be */
   /* Value at a place and, unless NULL, gradient in degrees of freedom; `image` returns the measures of the image cells.
-     The iterate is the map that a step is tried from. Counts an evaluation. Collective. */
+     The iterate is the map that a step is tried from. EqmProblemEvaluate, which calls it, counts. Collective. */
   PetscErrorCode (*evaluate)(EqmProblem, EqmIterate, const EqmPlace *place, PetscReal *image, PetscReal *value,
                              Vec gradient);
+  /* Set a cell's part of the Hessian at the iterate, in the degrees of freedom of its corners; what couples all cells
+     (a total) may be left out. NULL: only methods that need no second derivatives. Not collective. */
+  void (*set_hessian)(EqmProblem, EqmIterate, PetscInt cell, const EqmCellDerivatives *derivatives, PetscReal *matrix);
+  PetscBool of_ratios; /* it is least where all ratios are one: residuals of ratios (residual.h) may stand for it */
   /* A scalar Laplacian close to the Hessian at a place, coordinate by coordinate: edge weights and a mass per local
      cell, which `with_mass` says are to be used. Not collective. */
   PetscErrorCode (*metric)(EqmProblem, const EqmPlace *place, PetscReal *weights, PetscReal *mass,

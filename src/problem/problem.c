@@ -1,6 +1,5 @@
 #include "problem/problem.h"
 #include "domain/domain_private.h"
-#include "problem/barrier.h"
 #include "problem/term.h"
 #include <stdarg.h>
 
@@ -32,7 +31,6 @@ PetscErrorCode EqmProblemDestroy(EqmProblem *problem)
   PetscCall(PetscFree(p->vertex_mass));
   PetscCall(EqmLandmarksReset(&p->landmarks));
   PetscCall(EqmProblemDestroyTerms(p));
-  PetscCall(EqmBarrierDestroy(&p->barrier));
   PetscCall(EqmDomainDestroy(&p->domain));
   PetscCall(PetscFree(*problem));
   PetscFunctionReturn(0);

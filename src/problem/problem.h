@@ -15,8 +15,6 @@
 typedef struct _p_EqmIterate *EqmIterate;
 typedef struct _p_EqmProblem *EqmProblem;
 typedef struct EqmObjective EqmObjective;
-/* A barrier against folds of maps to the ball (barrier.c). */
-typedef struct _p_EqmBarrier *EqmBarrier;
 
 struct _p_EqmIterate {
   EqmPlace place;
@@ -38,7 +36,6 @@ struct _p_EqmProblem {
   EqmOrdering ordering;
   EqmLandmarks landmarks;
   struct _p_EqmTerm *terms; /* added to the objective (term.h); NULL: none */
-  EqmBarrier barrier;       /* ball: one of these terms while folds are mended, known to the metric; else NULL */
 
   EqmLinear scalar; /* one unknown per vertex: Laplacians of all kinds; NULL until the first need */
   unsigned char *scalar_count;

@@ -63,7 +63,6 @@ static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, const Eqm
   const EqmMesh mesh = problem->mesh;
   PetscReal part[EQM_NUM_RANGES], sum = 0., *slope, *flow;
   const PetscReal *cotangent;
-  EqmWork *work;
 
   PetscFunctionBegin;
   (void)iterate;
@@ -78,9 +77,41 @@ static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, const Eqm
   if (!(*value < INFINITY)) *value = INFINITY;
   if (gradient) PetscCall(Gradient(problem->domain, place, slope, flow, gradient));
   PetscCall(PetscFree2(slope, flow));
-  PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
-  work->evaluations++;
   PetscFunctionReturn(0);
+}
+
+/* The Hessian of D f(det) - T w, f = (1 + 1/det^2)/4: f D'' + f' (D' det' + det' D') + D (f'' det' det' + f' det''), D
+   quadratic in the places with half the second derivative the cotangents' Laplacian. */
+static void SetHessian(EqmProblem problem, EqmIterate iterate, PetscInt cell, const EqmCellDerivatives *d,
+                       PetscReal *matrix)
+{
+  const EqmDomain domain = problem->domain;
+  const PetscInt n = d->frame.count, *const v = domain->mesh->cells + 3 * cell;
+  const PetscReal share = domain->target_measure * domain->mesh->weight[cell], det = iterate->image[cell] / share;
+  const PetscReal f = .25 * (1. + 1. / (det * det)), first = -.5 / (det * det * det),
+                  second = 1.5 / (det * det * det * det);
+  const PetscReal stretch = Stretch(domain->mesh, problem->angle_weights, iterate->place.x, cell);
+  PetscReal laplacian[4][4], ambient[6], by_dof[EQM_MOST_CELL_DOFS];
+
+  EqmCellLaplacian(3, problem->angle_weights + 3 * cell, laplacian);
+  for (PetscInt k = 0; k < 6; k++) {
+    ambient[k] = 0.;
+    for (PetscInt b = 0; b < 3; b++) ambient[k] += 2. * laplacian[k / 2][b] * iterate->place.x[2 * v[b] + k % 2];
+  }
+  for (PetscInt i = 0; i < n; i++)
+    by_dof[i] = ambient[2 * d->frame.corner[i]] * d->frame.direction[i][0] +
+                ambient[2 * d->frame.corner[i] + 1] * d->frame.direction[i][1];
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt j = 0; j < n; j++) {
+      matrix[n * i + j] =
+          first / share * (by_dof[i] * d->first[j] + d->first[i] * by_dof[j]) +
+          stretch * (second / (share * share) * d->first[i] * d->first[j] + first / share * d->second[i][j]);
+    }
+    const PetscInt a = d->frame.corner[i];
+    const PetscReal curvature = EqmDomainMotion(domain, v[a])->curvature, *const x = iterate->place.x + 2 * v[a];
+    matrix[n * i + i] -= f * curvature * (ambient[2 * a] * x[0] + ambient[2 * a + 1] * x[1]);
+  }
+  EqmCellFrameAddLaplacian(&d->frame, 2. * f, laplacian, matrix);
 }
 
 /* The Laplacian of the edges' part, times T: its inverse is scaled by T again. */
@@ -107,6 +138,7 @@ static PetscErrorCode Metric(EqmProblem problem, const EqmPlace *place, PetscRea
 const EqmObjective EqmObjectiveSymmetricDirichlet = {.name = "symmetric-dirichlet",
                                                      .sum = EqmSumMeasures,
                                                      .evaluate = Evaluate,
+                                                     .set_hessian = SetHessian,
                                                      .metric = Metric,
                                                      .inverse_scale = 1.,
                                                      .planar_only = PETSC_TRUE};

@@ -1,6 +1,7 @@
 /* Vertices that are drawn to places: sum |x(v_i) - q_i|^2 (000 (46), 001 section 6.6). */
 #include "problem/term.h"
 #include "domain/domain_private.h"
+#include "geometry/simplex.h"
 
 static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image,
                           PetscReal *value, Vec gradient)
@@ -25,6 +26,25 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   PetscFunctionReturn(0);
 }
 
+/* Half the Hessian of a square is the identity; curvature of the domain is neglected. */
+static void AddMatrix(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image, PetscInt cell,
+                      const EqmCellFrame *frame, PetscReal factor, PetscReal *matrix)
+{
+  const PetscReal *const share = problem->landmarks.share;
+  const PetscInt corners = problem->mesh->cell_size, *const v = problem->mesh->cells + corners * cell;
+
+  (void)place;
+  (void)image;
+  for (PetscInt i = 0; i < frame->count; i++) {
+    const PetscInt a = frame->corner[i];
+    for (PetscInt j = 0; j < frame->count && share[v[a]] > 0.; j++) {
+      if (frame->corner[j] == a)
+        matrix[frame->count * i + j] +=
+            factor * term->weight * share[v[a]] * EqmDot3(frame->direction[i], frame->direction[j]);
+    }
+  }
+}
+
 static PetscErrorCode Destroy(EqmTerm term)
 {
   PetscFunctionBegin;
@@ -37,6 +57,7 @@ PetscErrorCode EqmTermCreateLandmarks(EqmProblem problem, PetscReal weight, EqmT
   PetscFunctionBegin;
   (void)problem;
   PetscCall(PetscNew(term));
-  **term = (struct _p_EqmTerm){.name = "landmarks", .weight = weight, .add = Add, .destroy = Destroy};
+  **term = (struct _p_EqmTerm){
+      .name = "landmarks", .weight = weight, .add = Add, .add_matrix = AddMatrix, .destroy = Destroy};
   PetscFunctionReturn(0);
 }

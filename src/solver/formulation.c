@@ -28,6 +28,7 @@ static const EqmMethodDefaults in_plane[] = {
     {"ncg", "ncg", "fixed-point", 100, 1e-4, 0., 0., NULL, NULL},
     {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, NULL},
     {"rgd", "rgd", "guarded", 100, 1e-6, 0., 0., NULL, NULL},
+    {"newton", "newton", "guarded", 100, 1e-9, 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults on_sphere[] = {
@@ -36,6 +37,7 @@ static const EqmMethodDefaults on_sphere[] = {
     {"ncg", "ncg", "guarded", 100, 1e-4, 0., 0., NULL, NULL},
     {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, NULL},
     {"rgd", "rgd", "descending", 100, 1e-6, 0., 0., NULL, NULL},
+    {"newton", "newton", "guarded", 100, 1e-9, 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults conformal_in_disk[] = {
@@ -77,6 +79,7 @@ static const EqmFormulation formulations[] = {
      .objective = &EqmObjectiveAuthalic,
      .unfold = EqmSphereUnfold,
      .starts = EQM_STARTS_SPHERE,
+     .takes_balance = PETSC_TRUE,
      METHODS(on_sphere)},
     {.target = "conformal",
      .domain = "disk",

@@ -14,8 +14,11 @@ static PetscErrorCode Evaluate(AreaSearch *s, const EqmPlace *place, PetscReal *
 {
   const EqmProblem problem = s->problem;
   PetscReal sum[3] = {0., 0., 0.};
+  EqmWork *work;
 
   PetscFunctionBegin;
+  PetscCall(EqmLedgerGetWork(problem->mesh->ledger, &work));
+  work->evaluations++;
   PetscCall(EqmAuthalicEnergy(problem->domain, place, s->image, energy, s->gradient));
   PetscCall(EqmDomainExpand(problem->domain, place, s->gradient, s->ambient));
   for (PetscInt k = 0; k < 3 * problem->mesh->num_owned; k++) sum[k % 3] += 2. * s->ambient[k];

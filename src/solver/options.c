@@ -151,7 +151,6 @@ static PetscErrorCode CreateMethod(EqmSolver solver, const EqmMethodDefaults *de
   PetscCall(PetscStrcmp(defaults->method, "lm", &is_lm));
   if (is_lm && solver->settings.inner_steps >= 0) PetscCall(EqmLmSetInnerSteps(*method, solver->settings.inner_steps));
   if (PetscOptionsObject) PetscCall(EqmMethodSetFromOptions(*method, PetscOptionsObject));
-  if (is_lm) PetscCall(EqmLmSetBalance(*method, PetscMax(solver->settings.balance, 0.)));
   PetscFunctionReturn(0);
 }
 
@@ -218,17 +217,27 @@ static const char *MethodName(EqmSolver solver)
 static PetscErrorCode CheckObjective(EqmSolver solver)
 {
   const EqmSolverSettings *const set = &solver->settings;
-  const PetscBool surface = (PetscBool)(solver->formulation->starts != EQM_STARTS_BALL);
-  const PetscBool takes_terms = solver->method->takes_terms, takes_balance = solver->formulation->takes_balance;
+  const EqmMethod method = solver->method;
+  const EqmObjective *const objective = solver->objective;
 
   PetscFunctionBegin;
-  if (solver->objective != solver->formulation->objective && !takes_terms)
+  if (objective != solver->formulation->objective && !method->takes_terms)
     EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s does not minimise -objective %s; take lbfgs, ncg or rgd",
-            solver->defaults.name, solver->objective->name);
-  if (set->balance > 0. && !surface) EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for the ball");
-  if (set->balance > 0. && !takes_terms && (!takes_balance || strcmp(solver->defaults.method, "lm")))
-    EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for -method %s on the %s%s", solver->defaults.name,
-            solver->formulation->domain, takes_balance || surface ? "; take lbfgs, ncg or rgd" : "");
+            solver->defaults.name, objective->name);
+  if (method->needs_ratios && !objective->of_ratios)
+    EqmFail(solver->comm, EQM_ERR_USAGE,
+            "-method %s squares how far ratios are from one, which -objective %s does not ask for; take lbfgs, ncg or "
+            "rgd",
+            solver->defaults.name, objective->name);
+  if (method->needs_hessian && !objective->set_hessian)
+    EqmFail(solver->comm, EQM_ERR_USAGE,
+            "-method %s needs second derivatives, which -objective %s does not have; take lbfgs, ncg or rgd",
+            solver->defaults.name, objective->name);
+  if (set->balance > 0. && !solver->formulation->takes_balance)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for this target: it weighs angles against areas");
+  if (set->balance > 0. && !method->takes_terms)
+    EqmFail(solver->comm, EQM_ERR_USAGE, "-balance is not for -method %s; take lm, lbfgs, ncg or rgd",
+            solver->defaults.name);
   PetscFunctionReturn(0);
 }
 
@@ -257,7 +266,7 @@ PetscErrorCode EqmSolverSettle(EqmSolver solver)
 PetscErrorCode EqmSolverCheckLandmarkSupport(EqmSolver solver)
 {
   PetscFunctionBegin;
-  if (!solver->method->takes_landmarks && !solver->method->takes_terms)
+  if (!solver->method->takes_terms)
     EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s cannot draw landmarks together; take lm, or lbfgs, ncg or rgd",
             solver->defaults.name);
   PetscFunctionReturn(0);

@@ -68,8 +68,7 @@ static PetscErrorCode CreateProblem(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* What the objective has beside its leading term, for methods that minimise whatever it consists of; lm has terms of
-   its own. */
+/* What the objective has beside its leading term, for methods that minimise it. */
 static PetscErrorCode AddTerms(EqmSolver solver)
 {
   const EqmProblem problem = solver->problem;

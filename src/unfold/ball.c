@@ -18,14 +18,14 @@ typedef struct {
 
 /* Descend by so many steps of L-BFGS with the barrier as it is, with the pattern of the first time; the objective
    before and after. */
-static PetscErrorCode Descend(EqmProblem problem, EqmIterate iterate, EqmMethod lbfgs, PetscInt most_steps,
-                              PetscReal *before, PetscReal *after)
+static PetscErrorCode Descend(EqmProblem problem, EqmBarrier barrier, EqmIterate iterate, EqmMethod lbfgs,
+                              PetscInt most_steps, PetscReal *before, PetscReal *after)
 {
   const PetscInt number = iterate->number;
   EqmStep outcome = EQM_STEP_TAKEN;
 
   PetscFunctionBegin;
-  problem->barrier->shape_weight = shape_share * problem->barrier->weight;
+  barrier->shape_weight = shape_share * barrier->weight;
   iterate->number = 0; /* the method counts from here when its metric is due */
   if (lbfgs->is_set_up)
     PetscCall(EqmLbfgsRestart(lbfgs, iterate));
@@ -42,10 +42,11 @@ static PetscErrorCode Descend(EqmProblem problem, EqmIterate iterate, EqmMethod 
 }
 
 /* Inspect the present map, and keep it in `best` if it is better. */
-static PetscErrorCode Compare(EqmProblem problem, EqmIterate iterate, Found *best, PetscInt64 *folds, PetscReal *least)
+static PetscErrorCode Compare(EqmProblem problem, EqmBarrier barrier, EqmIterate iterate, Found *best,
+                              PetscInt64 *folds, PetscReal *least)
 {
   PetscFunctionBegin;
-  PetscCall(EqmBarrierInspect(problem, iterate, least, folds));
+  PetscCall(EqmBarrierInspect(barrier, problem, iterate, least, folds));
   if (*folds > best->folds || (*folds == best->folds && iterate->totals.energy >= best->energy)) PetscFunctionReturn(0);
   best->folds = *folds;
   best->energy = iterate->totals.energy;
@@ -91,30 +92,29 @@ PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 
   PetscCall(CreateLbfgs(problem, &lbfgs));
   PetscCall(EqmPlaceCreate(problem->domain, &best.place));
   PetscCall(EqmBarrierCreate(problem, &iterate->place, &barrier));
-  problem->barrier = barrier;
   PetscCall(EqmProblemAddTerm(problem, &barrier->term));
   EqmTermInitVolume(&volume, 1.);
   PetscCall(EqmProblemAddTerm(problem, &volume));
   barrier->weight = first_weight;
-  PetscCall(Compare(problem, iterate, &best, &folds, &least));
+  PetscCall(Compare(problem, barrier, iterate, &best, &folds, &least));
   *before = folds;
   barrier->epsilon = PetscMax(1., -.2 * least);
   for (PetscInt round = 0; round < MOST_ROUNDS && folds > 0 && !stop; round++) {
-    PetscCall(Descend(problem, iterate, lbfgs, ROUND_STEPS, &start, &end));
-    PetscCall(Compare(problem, iterate, &best, &folds, &least));
+    PetscCall(Descend(problem, barrier, iterate, lbfgs, ROUND_STEPS, &start, &end));
+    PetscCall(Compare(problem, barrier, iterate, &best, &folds, &least));
     barrier->epsilon = NextEpsilon(barrier->epsilon, least, start, end);
     PetscCall(EqmProblemStopRequested(problem, &stop));
   }
   barrier->epsilon = wall;
   for (PetscInt round = 0; round < SETTLE_ROUNDS && folds == 0; round++) {
     barrier->weight *= settle_factor;
-    PetscCall(Descend(problem, iterate, lbfgs, SETTLE_STEPS, &start, &end));
-    PetscCall(Compare(problem, iterate, &best, &folds, &least));
+    PetscCall(Descend(problem, barrier, iterate, lbfgs, SETTLE_STEPS, &start, &end));
+    PetscCall(Compare(problem, barrier, iterate, &best, &folds, &least));
   }
   PetscCall(EqmMethodDestroy(&lbfgs));
   PetscCall(EqmProblemRemoveTerm(problem, &barrier->term));
   PetscCall(EqmProblemRemoveTerm(problem, &volume));
-  PetscCall(EqmBarrierDestroy(&problem->barrier));
+  PetscCall(EqmBarrierDestroy(&barrier));
   PetscCall(EqmPlaceCopy(problem->domain, &best.place, &iterate->place));
   PetscCall(EqmPlaceDestroy(&best.place));
   PetscCall(EqmIterateUpdate(problem, iterate));

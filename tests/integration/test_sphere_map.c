@@ -87,7 +87,7 @@ static PetscErrorCode TestRefusals(void)
 
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "sphere", 100, 1, &closed));
-  PetscCall(TestRefused(closed.mesh, "sphere", "-balance .01"));
+  PetscCall(TestRefused(closed.mesh, "sphere", "-method fixed-point -balance .01"));
   PetscCall(TestRefused(closed.mesh, "sphere", "-start harmonic"));
   PetscCall(TestMeshDestroy(&closed));
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 100, 1, &open));

@@ -20,8 +20,8 @@ static void TestTerm(EqmBarrier barrier)
   }
 }
 
-static PetscErrorCode ValueAt(EqmSolver solver, const EqmPlace *from, Vec step, PetscReal t, PetscReal *value,
-                              Vec gradient)
+static PetscErrorCode ValueAt(EqmSolver solver, EqmBarrier barrier, const EqmPlace *from, Vec step, PetscReal t,
+                              PetscReal *value, Vec gradient)
 {
   PetscReal *image;
   EqmPlace to;
@@ -32,14 +32,14 @@ static PetscErrorCode ValueAt(EqmSolver solver, const EqmPlace *from, Vec step, 
   PetscCall(EqmDomainMove(solver->problem->domain, from, t, step, &to));
   PetscCall(EqmImageMeasure(solver->problem->domain, &to, image));
   *value = 0.;
-  PetscCall(EqmBarrierAdd(solver->problem, &to, image, value, gradient));
+  PetscCall(barrier->term.add(&barrier->term, solver->problem, &to, image, value, gradient));
   PetscCall(EqmPlaceDestroy(&to));
   PetscCall(PetscFree(image));
   PetscFunctionReturn(0);
 }
 
 /* The gradient's product with a random direction against differences of fourth order. */
-static PetscErrorCode TestGradient(EqmSolver solver)
+static PetscErrorCode TestGradient(EqmSolver solver, EqmBarrier barrier)
 {
   const PetscReal h = 1e-4;
   PetscReal value[4], slope, length;
@@ -50,11 +50,11 @@ static PetscErrorCode TestGradient(EqmSolver solver)
   PetscCall(VecDuplicate(gradient, &step));
   PetscCall(VecZeroEntries(gradient));
   PetscCall(TestRandomStep(solver->problem->domain, 3, 1., step));
-  PetscCall(ValueAt(solver, &solver->iterate->place, step, 0., &value[0], gradient));
+  PetscCall(ValueAt(solver, barrier, &solver->iterate->place, step, 0., &value[0], gradient));
   PetscCall(VecDot(gradient, step, &slope));
   PetscCall(VecNorm(gradient, NORM_2, &length));
   for (int k = 0; k < 4; k++)
-    PetscCall(ValueAt(solver, &solver->iterate->place, step, (k < 2 ? k - 2 : k - 1) * h, &value[k], NULL));
+    PetscCall(ValueAt(solver, barrier, &solver->iterate->place, step, (k < 2 ? k - 2 : k - 1) * h, &value[k], NULL));
   CHECK(length > 0., "no gradient");
   CHECK_CLOSE((value[0] - 8. * value[1] + 8. * value[2] - value[3]) / (12. * h), slope, 1e-6, PetscAbsReal(slope));
   PetscCall(VecDestroy(&gradient));
@@ -62,8 +62,8 @@ static PetscErrorCode TestGradient(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* What a cell adds to the metric is symmetric and nowhere negative, and scales with the barrier. */
-static PetscErrorCode TestMatrix(EqmSolver solver)
+/* A cell's matrix is symmetric and nowhere negative, and scales with the barrier. */
+static PetscErrorCode TestMatrix(EqmSolver solver, EqmBarrier barrier)
 {
   PetscReal largest = 0.;
 
@@ -73,7 +73,8 @@ static PetscErrorCode TestMatrix(EqmSolver solver)
     PetscReal matrix[144] = {0.}, product = 0., trace = 0.;
     PetscInt n = 0;
     EqmCellFrameFind(solver->problem->domain, &solver->iterate->place, c, &frame);
-    EqmBarrierAddMatrix(solver->problem, &solver->iterate->place, solver->iterate->image, c, &frame, matrix);
+    barrier->term.add_matrix(&barrier->term, solver->problem, &solver->iterate->place, solver->iterate->image, c,
+                             &frame, 1., matrix);
     for (PetscInt a = 0; a < 4; a++) n += solver->mesh->on_boundary[solver->mesh->cells[4 * c + a]] ? 2 : 3;
     for (PetscInt i = 0; i < n; i++) {
       trace += matrix[n * i + i];
@@ -93,6 +94,7 @@ int main(int argc, char **argv)
 {
   TestMesh test;
   EqmSolver solver;
+  EqmBarrier barrier;
   PetscReal least;
   PetscInt64 folds, inside, outside;
 
@@ -102,19 +104,19 @@ int main(int argc, char **argv)
   PetscCall(TestSolve(test.mesh, "ball", "-max_it 0", &solver));
   PetscCall(TestShakenBall(solver->problem->domain, 5, .05, &solver->iterate->place));
   PetscCall(EqmIterateUpdate(solver->problem, solver->iterate));
-  PetscCall(EqmBarrierCreate(solver->problem, &solver->iterate->place, &solver->problem->barrier));
-  solver->problem->barrier->weight = .3;
-  solver->problem->barrier->shape_weight = .2;
-  solver->problem->barrier->epsilon = .1;
-  TestTerm(solver->problem->barrier);
-  PetscCall(TestGradient(solver));
-  PetscCall(TestMatrix(solver));
-  PetscCall(EqmBarrierInspect(solver->problem, solver->iterate, &least, &folds));
+  PetscCall(EqmBarrierCreate(solver->problem, &solver->iterate->place, &barrier));
+  barrier->weight = .3;
+  barrier->shape_weight = .2;
+  barrier->epsilon = .1;
+  TestTerm(barrier);
+  PetscCall(TestGradient(solver, barrier));
+  PetscCall(TestMatrix(solver, barrier));
+  PetscCall(EqmBarrierInspect(barrier, solver->problem, solver->iterate, &least, &folds));
   inside = solver->iterate->totals.folds;
   PetscCall(EqmImageBoundaryFolds(solver->problem->domain, &solver->iterate->place, &outside));
   CHECK(folds == inside + outside && (folds > 0) == (least <= 0.), "%d folds, %d and %d, least %g", (int)folds,
         (int)inside, (int)outside, (double)least);
-  PetscCall(EqmBarrierDestroy(&solver->problem->barrier));
+  PetscCall(EqmBarrierDestroy(&barrier));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscCall(EqmFinalize());

@@ -1,38 +1,34 @@
-/* Levenberg-Marquardt's parts: gradient, Gauss-Newton matrix with metric and mean term, bend of the geodesic, each
-   against differences of the residual itself. */
+/* Levenberg-Marquardt's parts: gradient, Gauss-Newton matrix with damping and mean term, second derivative along the
+   step, predicted decrease, each against differences of the residual itself. What terms add is tested with the terms.
+ */
 #include "support/testing.h"
 #include "domain/domain_private.h"
 #include "method/lm.h"
+#include "energy/loops.h"
+#include <string.h>
+#include "support/cellform.h"
 
-/* Three vertices are drawn to places where they are not. */
-static PetscErrorCode DrawLandmarks(EqmSolver solver)
+/* A solver at its start with three landmarks away from their vertices, or none, its method set up. */
+static PetscErrorCode Begin(EqmMesh mesh, const char *target, const char *more, PetscBool landmarks, EqmSolver *solver)
 {
   static const PetscInt vertex[3] = {5, 40, 77};
-  static const PetscReal place[9] = {.3, .4, .866, -.5, .2, .84, .6, -.1, .79};
-  PetscReal in_target[9];
-  const PetscInt dim = solver->problem->domain->dim;
+  static const PetscReal planar[6] = {.3, .4, -.5, .2, .6, -.1},
+                         spherical[9] = {.3, .4, .866, -.5, .2, .84, .6, -.1, .79};
+  const PetscInt dim = strcmp(target, "sphere") ? 2 : 3;
+  char text[128];
+  PetscOptions options;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 3 * dim; k++) in_target[k] = place[3 * (k / dim) + k % dim];
-  PetscCall(EqmLandmarksGive(&solver->problem->landmarks, 3, dim, vertex, in_target));
-  solver->problem->landmarks.lambda = 2.;
-  PetscCall(EqmLandmarksSetUp(&solver->problem->landmarks, solver->problem->domain));
-  PetscFunctionReturn(0);
-}
-
-/* A solver at its start, its method set up. */
-static PetscErrorCode Begin(EqmMesh mesh, const char *target, PetscReal balance, PetscBool landmarks, EqmSolver *solver)
-{
-  char options[128];
-
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(options, sizeof(options), "-method lm -start guarded -start_steps 1 -max_it 0 -balance %g",
-                          (double)balance));
-  PetscCall(TestSolve(mesh, target, options, solver));
-  if (landmarks) PetscCall(DrawLandmarks(*solver));
+  PetscCall(PetscSNPrintf(text, sizeof(text), "-method lm -start guarded -start_steps 1 -max_it 0 -quiet %s", more));
+  PetscCall(TestOptionsBegin(text, &options));
+  PetscCall(EqmSolverCreate(mesh, target, solver));
+  PetscCall(EqmSolverSetFromOptions(*solver));
+  if (landmarks) PetscCall(EqmSolverSetLandmarks(*solver, 3, dim, vertex, dim == 2 ? planar : spherical, 2., 1e-2));
+  PetscCall(EqmSolverSetUp(*solver));
+  PetscCall(TestOptionsEnd(&options));
   PetscCall(EqmMethodSetUp((*solver)->method, (*solver)->problem, (*solver)->iterate));
   EqmLm *const lm = (*solver)->method->data;
-  if (lm->kappa > 0.) lm->kappa = .3; /* not one, so that a forgotten factor shows */
+  if (lm->upright) lm->upright->weight *= .3; /* not one, so that a forgotten factor shows */
   PetscCall(EqmLmLinearise((*solver)->method, (*solver)->iterate));
   PetscFunctionReturn(0);
 }
@@ -56,10 +52,8 @@ static PetscErrorCode At(EqmSolver solver, Vec step, PetscReal t)
   PetscFunctionReturn(0);
 }
 
-/* Residuals at -2h, -h, 0, h, 2h along `step`, one after the other, per local cell; objectives too; on the sphere the
-   barrier's residuals (`lean`, NULL elsewhere). */
-static PetscErrorCode Sample(EqmSolver solver, Vec step, PetscReal h, PetscReal *residual, PetscReal *lean,
-                             PetscReal objective[5])
+/* Residuals at -2h, -h, 0, h, 2h along `step`, one after the other, per local cell; objectives too. */
+static PetscErrorCode Sample(EqmSolver solver, Vec step, PetscReal h, PetscReal *residual, PetscReal objective[5])
 {
   EqmLm *const lm = solver->method->data;
   const PetscInt m = solver->mesh->num_local_cells;
@@ -68,7 +62,6 @@ static PetscErrorCode Sample(EqmSolver solver, Vec step, PetscReal h, PetscReal 
   for (int k = 0; k < 5; k++) {
     PetscCall(At(solver, step, (k - 2) * h));
     PetscCall(PetscArraycpy(residual + k * m, lm->attempt.residual, m));
-    if (lean) PetscCall(PetscArraycpy(lean + k * m, lm->attempt.lean, m));
     objective[k] = lm->attempt.objective;
   }
   PetscFunctionReturn(0);
@@ -118,7 +111,7 @@ static PetscErrorCode TestGradient(EqmSolver solver)
     PetscCall(TestRandomStep(solver->problem->domain, seed, 1., step));
     if (seed == 2) PetscCall(VecCopy(lm->descent, step));
     PetscCall(ScaleToMesh(solver, step));
-    PetscCall(Sample(solver, step, 1e-2, residual, NULL, objective));
+    PetscCall(Sample(solver, step, 1e-2, residual, objective));
     PetscCall(VecDot(lm->descent, step, &product));
     PetscCall(VecNorm(lm->descent, NORM_2, &norm[0]));
     PetscCall(VecNorm(step, NORM_2, &norm[1]));
@@ -132,7 +125,7 @@ static PetscErrorCode TestGradient(EqmSolver solver)
 
 /* mu d^T M d, the damping of docs/methods.md: per cell (|rho| + .3 sqrt(phi)) (sqrt(3)/2) times the squared
    displacement about its mean. */
-static PetscReal Metric(EqmSolver solver, const PetscReal *velocity)
+static PetscReal Damping(EqmSolver solver, const PetscReal *velocity)
 {
   const EqmLm *const lm = solver->method->data;
   const EqmMesh mesh = solver->mesh;
@@ -152,45 +145,31 @@ static PetscReal Metric(EqmSolver solver, const PetscReal *velocity)
   return lm->mu * TestSum(mesh->comm, sum);
 }
 
-/* x^T H x from the definition: sum w (d rho)^2 + kappa sum w (d q)^2 by differences, metric, angle energy. */
+/* x^T H x from the definition: sum w (d rho)^2 by differences, damping, the terms' matrices. */
 static PetscErrorCode QuadraticForm(EqmSolver solver, Vec x, PetscReal *form)
 {
   EqmLm *const lm = solver->method->data;
   const EqmMesh mesh = solver->mesh;
   const PetscInt m = mesh->num_local_cells;
-  PetscReal *residual, *lean = NULL, *velocity, objective[5], gauss = 0., drawn = 0., length, scale;
+  PetscReal *residual, *velocity, objective[5], gauss = 0., terms, length, scale;
   Vec step;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(5 * m, &residual, solver->problem->domain->dim * mesh->num_local, &velocity));
-  if (lm->kappa > 0.) PetscCall(PetscMalloc1(5 * m, &lean));
   PetscCall(VecDuplicate(x, &step));
   PetscCall(VecCopy(x, step));
   PetscCall(ScaleToMesh(solver, step));
   PetscCall(VecNorm(x, NORM_2, &length));
   PetscCall(VecNorm(step, NORM_2, &scale));
-  PetscCall(Sample(solver, step, 1e-2, residual, lean, objective));
-  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
+  PetscCall(Sample(solver, step, 1e-2, residual, objective));
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++)
     gauss += mesh->weight[c] * PetscSqr(FirstDifference(m, residual + c, 1e-2));
-    if (lean) gauss += lm->kappa * mesh->weight[c] * PetscSqr(FirstDifference(m, lean + c, 1e-2));
-  }
   PetscCall(EqmDomainExpand(solver->problem->domain, &lm->now.place, step, velocity));
-  *form = TestSum(mesh->comm, gauss) + Metric(solver, velocity);
-  if (lm->epsilon > 0.) {
-    PetscReal angle;
-    PetscCall(EqmLmAngleEnergy(solver->method, velocity, &angle));
-    *form += lm->epsilon / solver->problem->domain->target_measure * angle;
-  }
-  for (PetscInt i = 0; i < solver->problem->landmarks.num; i++) {
-    for (PetscInt k = 0; k < solver->problem->domain->dim; k++)
-      drawn += solver->problem->landmarks.weight *
-               PetscSqr(velocity[solver->problem->domain->dim * solver->problem->landmarks.vertex[i] + k]);
-  }
-  *form += TestSum(mesh->comm, drawn);
+  PetscCall(TestTermsForm(solver->problem, &lm->now.place, lm->now.image, velocity, &terms));
+  *form = TestSum(mesh->comm, gauss) + Damping(solver, velocity) + terms / solver->problem->domain->target_measure;
   *form *= PetscSqr(length / scale);
   PetscCall(VecDestroy(&step));
   PetscCall(PetscFree2(residual, velocity));
-  PetscCall(PetscFree(lean));
   PetscFunctionReturn(0);
 }
 
@@ -227,45 +206,56 @@ static PetscErrorCode TestMatrix(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* Without terms the model promises sum w rho^2 less that of the linearised residual; lm->rate is that of the step. */
+static PetscErrorCode TestPrediction(EqmSolver solver)
+{
+  EqmLm *const lm = solver->method->data;
+  PetscReal predicted, squares;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLmPredictedDecrease(solver->method, &predicted));
+  CHECK(predicted > 0., "the model promises a decrease of %g", (double)predicted);
+  if (solver->problem->terms) PetscFunctionReturn(0);
+  for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) lm->rate[c] += lm->now.residual[c];
+  if (lm->residual->without_mean) PetscCall(EqmRemoveWeightedMean(solver->mesh, lm->rate));
+  PetscCall(EqmWeightedSum(solver->mesh, lm->rate, 2, &squares));
+  CHECK_CLOSE(predicted, lm->now.squares - squares, 1e-9, lm->now.squares);
+  PetscFunctionReturn(0);
+}
+
 /* The bend is the residuals' second derivative along the geodesic of the step. */
 static PetscErrorCode TestBend(EqmSolver solver)
 {
   EqmLm *const lm = solver->method->data;
   const EqmMesh mesh = solver->mesh;
   const PetscInt m = mesh->num_local_cells;
-  PetscReal *residual, *lean = NULL, *bend, *lean_bend = NULL, objective[5], ratio, length, scale, largest = 0.,
-                       predicted;
+  PetscReal *residual, *bend, objective[5], ratio, length, scale, largest = 0.;
   PetscBool success;
   Vec step;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(5 * m, &residual, m, &bend));
-  if (lm->kappa > 0.) PetscCall(PetscMalloc2(5 * m, &lean, m, &lean_bend));
   PetscCall(EqmLmFactor(solver->method, &success));
   PetscCall(EqmLmSolveForStep(solver->method, &success));
   PetscCall(EqmLmSolveForCurve(solver->method, &ratio));
-  PetscCall(PetscArraycpy(bend, lm->bend, m)); /* evaluations use it as scratch */
-  if (lean) PetscCall(PetscArraycpy(lean_bend, lm->lean_bend, m));
-  PetscCall(EqmLmPredictedDecrease(solver->method, &predicted));
-  CHECK(predicted > 0., "the model promises a decrease of %g", (double)predicted);
+  PetscCall(PetscArraycpy(bend, lm->bend, m));
+  PetscCall(TestPrediction(solver));
   PetscCall(VecDuplicate(lm->step, &step));
   PetscCall(VecCopy(lm->step, step));
   PetscCall(ScaleToMesh(solver, step));
   PetscCall(VecNorm(lm->step, NORM_2, &length));
   PetscCall(VecNorm(step, NORM_2, &scale));
-  PetscCall(Sample(solver, step, 1e-2, residual, lean, objective));
+  PetscCall(Sample(solver, step, 1e-2, residual, objective));
   for (PetscInt c = 0; c < m; c++) largest = PetscMax(largest, PetscAbsReal(bend[c]));
   largest = TestMax(mesh->comm, largest);
   CHECK(largest > 0. && ratio > 0., "no bend at all");
-  for (PetscInt c = 0; c < m; c++) { /* at ratio one the balanced residual has a kink: leave out what crosses it */
+  for (PetscInt c = 0; c < m; c++) { /* at ratio one the mixed residual has a kink: leave out what crosses it */
     const PetscReal *const f = residual + c;
-    if (lm->epsilon > 0. && (f[0] > 0.) != (f[4 * m] > 0.)) continue;
+    if (!lm->residual->without_mean && (f[0] > 0.) != (f[4 * m] > 0.)) continue;
     CHECK_CLOSE(SecondDifference(m, f, 1e-2) * PetscSqr(length / scale), bend[c], 1e-4, largest);
-    if (lean) CHECK_CLOSE(SecondDifference(m, lean + c, 1e-2) * PetscSqr(length / scale), lean_bend[c], 1e-4, largest);
   }
   PetscCall(VecDestroy(&step));
   PetscCall(PetscFree2(residual, bend));
-  PetscCall(PetscFree2(lean, lean_bend));
   PetscFunctionReturn(0);
 }
 
@@ -315,14 +305,14 @@ static PetscErrorCode TestMagnification(void)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TestTarget(const char *shape, const char *target, PetscReal balance, PetscBool landmarks)
+static PetscErrorCode TestTarget(const char *shape, const char *target, const char *options, PetscBool landmarks)
 {
   TestMesh test;
   EqmSolver solver;
 
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, shape, 300, 1, &test));
-  PetscCall(Begin(test.mesh, target, balance, landmarks, &solver));
+  PetscCall(Begin(test.mesh, target, options, landmarks, &solver));
   PetscCall(TestGradient(solver));
   PetscCall(TestMatrix(solver));
   PetscCall(TestBend(solver));
@@ -335,14 +325,17 @@ int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
   PetscCall(EqmInitialize(&argc, &argv));
-  PetscCall(TestTarget("hills", "disk", 0., PETSC_FALSE));
-  PetscCall(TestTarget("cap", "disk", .05, PETSC_FALSE));
-  PetscCall(TestTarget("patch", "square", 0., PETSC_FALSE));
-  PetscCall(TestTarget("hills", "square", .02, PETSC_FALSE));
-  PetscCall(TestTarget("head", "sphere", 0., PETSC_FALSE));
-  PetscCall(TestTarget("hills", "disk", 0., PETSC_TRUE));
-  PetscCall(TestTarget("cap", "disk", .05, PETSC_TRUE));
-  PetscCall(TestTarget("head", "sphere", 0., PETSC_TRUE));
+  PetscCall(TestTarget("hills", "disk", "", PETSC_FALSE));
+  PetscCall(TestTarget("cap", "disk", "-balance .05", PETSC_FALSE));
+  PetscCall(TestTarget("hills", "disk", "-lm_residual ratio", PETSC_FALSE));
+  PetscCall(TestTarget("hills", "disk", "-lm_residual mixed", PETSC_FALSE));
+  PetscCall(TestTarget("patch", "square", "", PETSC_FALSE));
+  PetscCall(TestTarget("hills", "square", "-balance .02", PETSC_FALSE));
+  PetscCall(TestTarget("head", "sphere", "", PETSC_FALSE));
+  PetscCall(TestTarget("head", "sphere", "-balance .05", PETSC_TRUE));
+  PetscCall(TestTarget("hills", "disk", "", PETSC_TRUE));
+  PetscCall(TestTarget("cap", "disk", "-balance .05", PETSC_TRUE));
+  PetscCall(TestTarget("head", "sphere", "", PETSC_TRUE));
   PetscCall(TestMagnification());
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
