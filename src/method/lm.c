@@ -106,6 +106,8 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
 static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
 {
   EqmLm *const lm = method->data;
+  char name[32];
+  PetscBool given, is_auto;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsBoundedInt("-lm_inner",
@@ -115,8 +117,11 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
   PetscCall(PetscOptionsString("-lm_residual",
                                "lm: what is squared of each ratio r: log (of r, less its mean), mixed (r - 1 where r > "
                                "1, else log r), ratio (r - 1), or auto: mixed beside the angle energy, else log",
-                               "EqmSolverSetFromOptions", lm->residual_name, lm->residual_name,
-                               sizeof(lm->residual_name), NULL));
+                               "EqmSolverSetFromOptions", "auto", name, sizeof(name), &given));
+  if (!given) PetscFunctionReturn(0);
+  PetscCall(PetscStrcmp(name, "auto", &is_auto));
+  lm->wanted = NULL;
+  if (!is_auto) PetscCall(EqmResidualFind(method->comm, name, &lm->wanted));
   PetscFunctionReturn(0);
 }
 
@@ -195,16 +200,12 @@ static PetscErrorCode TakeStart(EqmMethod method, EqmIterate iterate)
 static PetscErrorCode ChooseResidual(EqmMethod method)
 {
   EqmLm *const lm = method->data;
-  PetscBool is_auto, has_angle = PETSC_FALSE;
+  PetscBool has_angle = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(PetscStrcmp(lm->residual_name, "auto", &is_auto));
   for (EqmTerm term = method->problem->terms; term && !has_angle; term = term->next)
     PetscCall(PetscStrcmp(term->name, "angle", &has_angle));
-  if (is_auto)
-    lm->residual = has_angle ? &EqmResidualMixed : &EqmResidualLog;
-  else
-    PetscCall(EqmResidualFind(method->comm, lm->residual_name, &lm->residual));
+  lm->residual = lm->wanted ? lm->wanted : has_angle ? &EqmResidualMixed : &EqmResidualLog;
   PetscFunctionReturn(0);
 }
 
@@ -282,7 +283,6 @@ PetscErrorCode EqmMethodCreateLm(EqmMethod method)
   PetscFunctionBegin;
   PetscCall(PetscNew(&lm));
   lm->most_inner = 100;
-  PetscCall(PetscStrncpy(lm->residual_name, "auto", sizeof(lm->residual_name)));
   method->data = lm;
   method->purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration";
   method->takes_terms = method->needs_ratios = PETSC_TRUE;

@@ -15,8 +15,8 @@ typedef struct {
 } EqmTrial;
 
 typedef struct {
-  PetscInt most_inner; /* quasi-Newton steps on each factor, at most */
-  char residual_name[32];
+  PetscInt most_inner;       /* quasi-Newton steps on each factor, at most */
+  const EqmResidual *wanted; /* the user's; NULL: what suits the terms */
   const EqmResidual *residual;
   EqmLinear linear;
   PetscReal mu;

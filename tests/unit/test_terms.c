@@ -54,18 +54,6 @@ static PetscErrorCode Begin(EqmMesh mesh, const char *target, const char *text, 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TestGradient(EqmMesh mesh, const char *target, const char *options, PetscBool landmarks)
-{
-  EqmSolver solver;
-
-  PetscFunctionBegin;
-  PetscCall(Begin(mesh, target, options, landmarks, &solver));
-  PetscCall(TestSlope(solver, options));
-  if (solver->problem->terms) PetscCall(TestMatrix(solver));
-  PetscCall(EqmSolverDestroy(&solver));
-  PetscFunctionReturn(0);
-}
-
 /* ---- matrices and curves */
 
 /* q of a triangle of the sphere. */
@@ -169,6 +157,18 @@ static PetscErrorCode TestMatrix(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode TestGradient(EqmMesh mesh, const char *target, const char *options, PetscBool landmarks)
+{
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(Begin(mesh, target, options, landmarks, &solver));
+  PetscCall(TestSlope(solver, options));
+  if (solver->problem->terms) PetscCall(TestMatrix(solver));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscFunctionReturn(0);
+}
+
 /* Along the geodesic of a step with velocity u, J^T W q'' of the upright term, times any v, is sum w q'' dq(v). */
 static PetscErrorCode TestUpright(EqmMesh mesh)
 {
@@ -268,7 +268,7 @@ static PetscErrorCode TestAngles(TestMesh *test)
   PetscFunctionReturn(0);
 }
 
-/* One minimum, whatever the method: the least of area and angle energy with a landmark drawn away. */
+/* One minimum, whatever the method: the least of area and angle energy. */
 static PetscErrorCode TestEveryMethod(TestMesh *disk, TestMesh *sphere)
 {
   static const char *const methods[] = {"lbfgs", "newton", "ncg", "lm -lm_residual ratio"};
@@ -280,15 +280,14 @@ static PetscErrorCode TestEveryMethod(TestMesh *disk, TestMesh *sphere)
       char options[160];
       EqmSolver solver;
       PetscReal value;
-      PetscCall(
-          PetscSNPrintf(options, sizeof(options), "-balance .5 -max_it 400 -energy_rtol 1e-12 -method %s", methods[k]));
-      PetscCall(Begin(target ? sphere->mesh : disk->mesh, target ? "sphere" : "disk", options, PETSC_TRUE, &solver));
+      PetscCall(PetscSNPrintf(options, sizeof(options),
+                              "-balance .5 -max_it 400 -start guarded -energy_rtol 1e-12 -method %s", methods[k]));
+      PetscCall(Begin(target ? sphere->mesh : disk->mesh, target ? "sphere" : "disk", options, PETSC_FALSE, &solver));
       PetscCall(EqmSolverSolve(solver));
       PetscCall(EqmProblemEvaluate(solver->problem, solver->iterate, &solver->iterate->place, solver->iterate->image,
                                    &value, NULL));
-      printf("%s %d: %.12g after %d\n", methods[k], target, (double)value, (int)solver->iterate->number);
       if (k == 0) least[target] = value;
-      CHECK_CLOSE(value, least[target], 1e-4, least[target]);
+      CHECK_CLOSE(value, least[target], 5e-5, least[target]);
       PetscCall(EqmSolverDestroy(&solver));
     }
   }
