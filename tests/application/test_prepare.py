@@ -5,12 +5,15 @@ usage: python3 test_prepare.py EQUIMAP [RANKS]
 """
 import json
 import os
-import subprocess
 import sys
-import tempfile
 
 import h5py
 import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from evaluate import triangle_areas
+from meshes import write_obj
+from program import run_in_folder
 
 N = 20  # squares along a side
 
@@ -56,16 +59,8 @@ def scan():
     return points, cells, fin, list(island)
 
 
-def write_obj(path, points, cells):
-    with open(path, "w") as file:
-        file.writelines("v %.17g %.17g %.17g\n" % tuple(p) for p in points)
-        file.writelines("f %d %d %d\n" % tuple(i + 1 for i in c) for c in cells)
-
-
 def areas(points, cells):
-    p = numpy.asarray(points)[numpy.asarray(cells)]
-    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    return (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
+    return triangle_areas(numpy.asarray(points), numpy.asarray(cells))
 
 
 def steps_of(path):
@@ -73,12 +68,12 @@ def steps_of(path):
         return {entry["step"]: entry["count"] for entry in json.load(file)["prepared"]}
 
 
-def test_scan(run, run_alone):
+def test_scan(program):
     points, cells, fin, island = scan()
-    write_obj("scan.obj", points, cells)
-    refused = run("disk", "scan.obj", "-o", "bad.h5", expected=(3,))
+    write_obj(program, "scan.obj", points, cells)
+    refused = program.succeed("disk", "scan.obj", "-o", "bad.h5", codes=(3,))
     assert "disk scan.obj -prepare auto -o OUT" in refused.stderr and not os.path.exists("bad.h5"), refused.stderr
-    done = run("disk", "scan.obj", "-prepare", "auto", "-o", "scan.h5", "-summary", "scan.json")
+    done = program.succeed("disk", "scan.obj", "-prepare", "auto", "-o", "scan.h5", "-summary", "scan.json")
     assert "prepared: holes: 4 filled" in done.stdout, done.stdout
     steps = steps_of("scan.json")
     assert steps["largest"] == 2 and steps["holes"] == 4, steps  # the fin is a piece of its own once it is cut off
@@ -96,21 +91,21 @@ def test_scan(run, run_alone):
     assert (image[len(points) - 4 :] == 0).all(), "vertices of the piece that was left out"
 
     for options, name in ((("-prepare", "auto"), "a"), (("-prepare", "auto", "-target", "sphere"), "s")):
-        run("convert", "scan.obj", f"{name}.obj", *options)
-        run_alone("convert", "scan.obj", f"{name}1.obj", *options)
+        program.succeed("convert", "scan.obj", f"{name}.obj", *options)
+        program.succeed("convert", "scan.obj", f"{name}1.obj", *options, ranks=1)
         with open(f"{name}.obj") as one, open(f"{name}1.obj") as other:
             assert one.read() == other.read(), "the same on any number of ranks"
-    assert "a closed surface without handles" in run("check", "s.obj").stdout
-    assert "a disk-type surface" in run("check", "a.obj").stdout
+    assert "a closed surface without handles" in program.succeed("check", "s.obj").stdout
+    assert "a disk-type surface" in program.succeed("check", "a.obj").stdout
 
 
-def test_hole_weight(run):
+def test_hole_weight(program):
     """A hole of little weight has a small image."""
     points, cells = sheet(holes={(a, b) for a in range(8, 12) for b in range(8, 12)})
-    write_obj("hole.obj", points, cells)
+    write_obj(program, "hole.obj", points, cells)
     share = []
     for weight in ("1", ".05"):
-        run("disk", "hole.obj", "-prepare", "holes", "-hole_weight", weight, "-o", "hole.h5", expected=(0, 4))
+        program.succeed("disk", "hole.obj", "-prepare", "holes", "-hole_weight", weight, "-o", "hole.h5", codes=(0, 4))
         with h5py.File("hole.h5") as file:
             added = file["repaired/parent"][:] < 0
             area = areas(file["repaired/coordinates"][:], file["repaired/cells"][:])
@@ -118,22 +113,22 @@ def test_hole_weight(run):
     assert 0.02 < share[0] < 0.08 and share[1] < 0.15 * share[0], share
 
 
-def test_seam(run):
+def test_seam(program):
     """A torn sheet is sewn; both sides of the seam get the same image. A cut that makes a disk is left alone."""
     points, cells = sheet(seam=7)
-    write_obj("torn.obj", points, cells)
-    run("disk", "torn.obj", "-prepare", "weld", "-o", "torn.h5", "-summary", "torn.json")
+    write_obj(program, "torn.obj", points, cells)
+    program.succeed("disk", "torn.obj", "-prepare", "weld", "-o", "torn.h5", "-summary", "torn.json")
     assert steps_of("torn.json") == {"weld": N + 1}
     with h5py.File("torn.h5") as file:
         image = file["map/coordinates"][:]
     left = image[7 * (N + 1) : 8 * (N + 1)]
     assert (left == image[(N + 1) ** 2 :]).all() and abs(left).max() > 0.1
-    assert "can begin" in run("disk", "torn.obj", "-prepare", "auto", "-o", "t.h5", "-dry_run").stdout
-    wide = run("disk", "torn.obj", "-prepare", "weld", "-weld_tolerance", "2", "-o", "t.h5", expected=(2,))
+    assert "can begin" in program.succeed("disk", "torn.obj", "-prepare", "auto", "-o", "t.h5", "-dry_run").stdout
+    wide = program.succeed("disk", "torn.obj", "-prepare", "weld", "-weld_tolerance", "2", "-o", "t.h5", codes=(2,))
     assert "-weld_tolerance" in wide.stderr
 
 
-def test_handle(run, run_alone):
+def test_handle(program):
     """A sheet with a thin bridge between two of its squares: the handle is placed, refused while it is large, cut else."""
     points, cells = sheet(holes={(5, 10), (13, 10)})
     corners = [[(a + c) * (N + 1) + 10 + d for c, d in ((0, 0), (1, 0), (1, 1), (0, 1))] for a in (5, 13)]
@@ -149,60 +144,45 @@ def test_handle(run, run_alone):
         for k in range(4):
             a, b, c, d = one[k], one[(k + 1) % 4], two[(k + 1) % 4], two[k]
             cells += [(a, b, c), (a, c, d)]
-    write_obj("bridge.obj", points, cells)
-    told = run("check", "bridge.obj", "-summary", "check.json", expected=(3,)).stdout
+    write_obj(program, "bridge.obj", points, cells)
+    told = program.succeed("check", "bridge.obj", "-summary", "check.json", codes=(3,)).stdout
     assert "the surface has 1 handle" in told and "around or through one: " in told, told
     with open("check.json") as file:
         where = json.load(file)["findings"]["genus"]["where"]
     loop = [v for part in where for v in part]
     edges = {frozenset(pair) for c in cells for pair in ((c[0], c[1]), (c[1], c[2]), (c[0], c[2]))}
     assert len(loop) == 4 and all(frozenset((loop[k], loop[(k + 1) % 4])) in edges for k in range(4)), loop
-    refused = run("disk", "bridge.obj", "-prepare", "auto", "-o", "t.h5", "-handle_length", ".01", expected=(3,))
+    refused = program.succeed("disk", "bridge.obj", "-prepare", "auto", "-o", "t.h5", "-handle_length", ".01", codes=(3,))
     assert "1 handle" in refused.stderr
-    run("disk", "bridge.obj", "-prepare", "auto", "-o", "b.h5", "-handle_length", ".3", "-summary", "b.json", expected=(0, 4))
+    program.succeed("disk", "bridge.obj", "-prepare", "auto", "-o", "b.h5", "-handle_length", ".3", "-summary", "b.json", codes=(0, 4))
     assert steps_of("b.json")["handles"] == 1
     with h5py.File("b.h5") as file:
         fate = file["cell/mapped"][:]
         assert (fate > 0).all() and 4 <= (fate == 2).sum() <= 40 and file.attrs["prepared_mesh.cells_cut_off"] == (fate == 2).sum()
-    run("convert", "bridge.obj", "b.obj", "-prepare", "handles", "-handle_length", ".3")
-    run_alone("convert", "bridge.obj", "b1.obj", "-prepare", "handles", "-handle_length", ".3")
+    program.succeed("convert", "bridge.obj", "b.obj", "-prepare", "handles", "-handle_length", ".3")
+    program.succeed("convert", "bridge.obj", "b1.obj", "-prepare", "handles", "-handle_length", ".3", ranks=1)
     with open("b.obj") as one, open("b1.obj") as other:
         assert one.read() == other.read(), "the same on any number of ranks"
-    assert "genus 0" in run("check", "b.obj").stdout
+    assert "genus 0" in program.succeed("check", "b.obj").stdout
 
 
-def test_usage(run):
+def test_usage(program):
     points, cells, _, _ = scan()
-    write_obj("scan.obj", points, cells)
-    assert "weld, split, largest, holes, handles" in run("disk", "scan.obj", "-prepare", "mend", "-o", "t.h5", expected=(2,)).stderr
-    assert "there are only" in run("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "9", expected=(2,)).stderr
-    done = run("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "3")
+    write_obj(program, "scan.obj", points, cells)
+    assert "weld, split, largest, holes, handles" in program.succeed("disk", "scan.obj", "-prepare", "mend", "-o", "t.h5", codes=(2,)).stderr
+    assert "there are only" in program.succeed("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "9", codes=(2,)).stderr
+    done = program.succeed("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "3")
     assert " 2 triangles" in done.stdout, done.stdout  # the island; the fin is larger
 
 
-def main(equimap, ranks):
-    def runner(ranks):
-        mpirun = ["mpirun", "-n", ranks, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-
-        def run(*arguments, expected=(0,)):
-            done = subprocess.run([*mpirun, equimap, *arguments], capture_output=True, text=True)
-            assert done.returncode in expected, (arguments, done.returncode, done.stdout[-2000:], done.stderr[-2000:])
-            return done
-
-        return run
-
-    run = runner(ranks)
-    test_scan(run, runner("1"))
-    test_hole_weight(run)
-    test_seam(run)
-    test_handle(run, runner("1"))
-    test_usage(run)
+def main(program):
+    test_scan(program)
+    test_hole_weight(program)
+    test_seam(program)
+    test_handle(program)
+    test_usage(program)
     print("prepare: holes filled, pieces left out, seams sewn, non-manifold parts cut apart")
 
 
 if __name__ == "__main__":
-    program = os.path.abspath(sys.argv[1])
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        main(program, sys.argv[2] if len(sys.argv) > 2 else "1")
-        os.chdir("/")
+    run_in_folder(main)

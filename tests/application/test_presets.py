@@ -6,12 +6,13 @@ import json
 import os
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 
 import h5py
 import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from program import run_in_folder
 
 CONFIG = pathlib.Path(__file__).resolve().parents[2] / "config"
 
@@ -38,13 +39,9 @@ def read_row(preset):
     return command[1], dict(line.split(": ") for line in lines if not line.startswith("#"))
 
 
-def main(equimap, ranks):
-    mpirun = ["mpirun", "-n", ranks, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-
-    def run(*arguments, expected=(0, 4)):
-        done = subprocess.run([*mpirun, equimap, *map(str, arguments)], capture_output=True, text=True)
-        assert done.returncode in expected, (arguments, done.returncode, done.stdout[-2000:], done.stderr[-2000:])
-        return done
+def main(program):
+    def run(*arguments, codes=(0, 4)):
+        return program.succeed(*arguments, codes=codes)
 
     def coordinates(path):
         with h5py.File(path) as file:
@@ -66,7 +63,7 @@ def main(equimap, ranks):
             options = file.attrs["options"]
         assert all(f"-{name} {value}" in options for name, value in wanted.items()), (preset, options)
         # what it claims: the same as no options at all; on more ranks no two runs have the same bits
-        if preset.stem.endswith("-default") and ranks == "1":
+        if preset.stem.endswith("-default") and program.ranks == 1:
             run(target, "patch.obj", "-o", "bare.h5")
             assert numpy.array_equal(coordinates("bare.h5"), coordinates(f"{preset.stem}.h5")), preset
 
@@ -74,12 +71,12 @@ def main(equimap, ranks):
     for preset in sorted(CONFIG.glob("*/*.yaml")):  # of those with the same options, one is tried
         command, options = read_row(preset)
         mesh = {"sphere": "head.obj", "conformal": "head.obj", "ball": "ball.h5"}.get(command, "patch.obj")
-        if (command, *options.items()) in known or ranks != "1":
+        if (command, *options.items()) in known or program.ranks != 1:
             continue
         known.add((command, *options.items()))
         if not os.path.exists(mesh):
             run("generate", mesh.split(".")[0], "-n", "300", "-o", mesh)
-        run(command, mesh, "-o", "row.h5", "-options_file", preset, "-dry_run", expected=(0,))
+        run(command, mesh, "-o", "row.h5", "-options_file", preset, "-dry_run", codes=(0,))
     assert not os.path.exists("row.h5")
 
     overruled = ("-o", "few.h5", "-options_file", CONFIG / "disk-ncg.yaml")
@@ -87,15 +84,15 @@ def main(equimap, ranks):
         run("disk", "patch.obj", *arguments)
         with h5py.File("few.h5") as file:
             assert file.attrs["iterations"] == 3 and file.attrs["method"] == "ncg"
-    missing = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "absent.yaml", expected=(6,))
+    missing = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "absent.yaml", codes=(6,))
     assert "cannot read the options file 'absent.yaml'" in missing.stderr and "PETSC ERROR" not in missing.stderr
     with open("damaged.yaml", "w") as file:
         file.write("max_it: [1,\n method")
-    damaged = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "damaged.yaml", expected=(2,))
+    damaged = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "damaged.yaml", codes=(2,))
     assert "cannot understand the options file 'damaged.yaml'" in damaged.stderr
     with open("misspelt.yaml", "w") as file:
         file.write("maxit: 3\n")
-    misspelt = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "misspelt.yaml", expected=(2,))
+    misspelt = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "misspelt.yaml", codes=(2,))
     assert "unknown option -maxit" in misspelt.stderr
     unused = run("disk", "patch.obj", "-o", "few.h5", "-max_it", "1", "-multigrid_kps_rtol", "1e-3")
     assert "no use for the option -multigrid_kps_rtol" in unused.stderr
@@ -106,8 +103,4 @@ def main(equimap, ranks):
 
 
 if __name__ == "__main__":
-    program = os.path.abspath(sys.argv[1])
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        main(program, sys.argv[2] if len(sys.argv) > 2 else "1")
-        os.chdir("/")
+    run_in_folder(main)

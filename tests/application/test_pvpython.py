@@ -9,6 +9,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from program import launcher
+
 
 def check_grid(grid, vertices, cells):
     assert grid.GetNumberOfPoints() == vertices, grid.GetNumberOfPoints()
@@ -44,9 +47,8 @@ def make_and_look(equimap, ranks):
         return 77
     with tempfile.TemporaryDirectory() as folder:
         mesh, result = os.path.join(folder, "cap.obj"), os.path.join(folder, "cap.h5")
-        mpirun = ["mpirun", "-n", ranks, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
         subprocess.run([equimap, "generate", "cap", "-n", "2000", "-o", mesh], check=True, stdout=subprocess.DEVNULL)
-        run = subprocess.run([*mpirun, equimap, "disk", mesh, "-o", result], stdout=subprocess.DEVNULL)
+        run = subprocess.run([*launcher(int(ranks)), equimap, "disk", mesh, "-o", result], stdout=subprocess.DEVNULL)
         assert run.returncode in (0, 4), run.returncode  # 4: not converged, map written
         with open(mesh) as lines:
             kinds = [line[:2] for line in lines]

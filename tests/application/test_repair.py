@@ -5,12 +5,15 @@ usage: python3 test_repair.py EQUIMAP [RANKS]
 """
 import json
 import os
-import subprocess
 import sys
-import tempfile
 
 import h5py
 import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from evaluate import triangle_areas
+from meshes import write_obj
+from program import run_in_folder
 
 N = 12  # squares along a side
 
@@ -45,18 +48,8 @@ def make_mesh():
     return points, cells, ears, twins
 
 
-def write_obj(path, points, cells):
-    with open(path, "w") as file:
-        file.writelines("v %.17g %.17g %.17g\n" % tuple(p) for p in points)
-        file.writelines("f %d %d %d\n" % tuple(i + 1 for i in c) for c in cells)
-
-
 def areas(points, cells):
-    p = numpy.asarray(points)[numpy.asarray(cells)]
-    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    if p.shape[2] == 2:
-        return (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
-    return numpy.linalg.norm(numpy.cross(u, v), axis=1) / 2
+    return triangle_areas(numpy.asarray(points), numpy.asarray(cells))
 
 
 def check_result(path, points, cells, ears, twins, folds):
@@ -90,20 +83,13 @@ def check_result(path, points, cells, ears, twins, folds):
     return abs(areas(image, numpy.asarray(cells)[ears]))
 
 
-def main(equimap, ranks):
-    mpirun = ["mpirun", "-n", ranks, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-
-    def run(*arguments, expected=(0,)):
-        done = subprocess.run([*mpirun, equimap, *arguments], capture_output=True, text=True)
-        assert done.returncode in expected, (arguments, done.returncode, done.stdout[-2000:], done.stderr[-2000:])
-        return done
-
+def main(program):
     points, cells, ears, twins = make_mesh()
-    write_obj("ears.obj", points, cells)
+    write_obj(program, "ears.obj", points, cells)
     for target, folds in (("disk", 0), ("square", 4)):  # on the square the ears themselves lie along the sides
-        refused = run(target, "ears.obj", "-o", "bad.h5", expected=(3,))
+        refused = program.succeed(target, "ears.obj", "-o", "bad.h5", codes=(3,))
         assert "ears.obj -repair -o OUT" in refused.stderr and not os.path.exists("bad.h5")
-        done = run(target, "ears.obj", "-repair", "-o", f"{target}.h5,{target}.obj", "-summary", "run.json", expected=(5,) if folds else (0, 4))
+        done = program.succeed(target, "ears.obj", "-repair", "-o", f"{target}.h5,{target}.obj", "-summary", "run.json", codes=(5,) if folds else (0, 4))
         assert "repair: 2 twins" in done.stdout and "warning: 1 vertex belongs to no usable triangle" in done.stdout
         flat = check_result(f"{target}.h5", points, cells, ears, twins, folds)
         with open("run.json") as file:
@@ -114,23 +100,19 @@ def main(equimap, ranks):
 
     clean = [c for i, c in enumerate(cells) if i not in ears and i not in twins]
     whole = [tuple(c) if areas(numpy.asarray(points)[:, :2], [c])[0] > 0 else (c[0], c[2], c[1]) for c in clean]
-    write_obj("clean.obj", points, whole)
-    loud = run("disk", "clean.obj", "-repair", "-o", "clean.h5", "-max_it", "2", expected=(0, 4))
+    write_obj(program, "clean.obj", points, whole)
+    loud = program.succeed("disk", "clean.obj", "-repair", "-o", "clean.h5", "-max_it", "2", codes=(0, 4))
     assert "repair: 0 twins" in loud.stdout
     with h5py.File("clean.h5") as file:
         assert "repaired" not in file and not [name for name in file.attrs if name.startswith("repair_")]
-    quiet = run("disk", "clean.obj", "-repair", "-quiet", "-o", "clean.h5", "-max_it", "2", expected=(0, 4))
+    quiet = program.succeed("disk", "clean.obj", "-repair", "-quiet", "-o", "clean.h5", "-max_it", "2", codes=(0, 4))
     assert "repair" not in quiet.stdout and "warning" not in quiet.stdout
 
-    write_obj("torn.obj", points, whole[:100] + whole[160:])
-    refused = run("disk", "torn.obj", "-repair", "-o", "bad.h5", expected=(3,))
+    write_obj(program, "torn.obj", points, whole[:100] + whole[160:])
+    refused = program.succeed("disk", "torn.obj", "-repair", "-o", "bad.h5", codes=(3,))
     assert "not even after -repair" in refused.stderr and not os.path.exists("bad.h5")
     print("repair: ears, twins, turned triangles and a lost vertex mended for disk and square")
 
 
 if __name__ == "__main__":
-    program = os.path.abspath(sys.argv[1])
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        main(program, sys.argv[2] if len(sys.argv) > 2 else "1")
-        os.chdir("/")
+    run_in_folder(main)

@@ -6,14 +6,15 @@ import os
 import re
 import shutil
 import struct
-import subprocess
 import sys
-import tempfile
 import xml.dom.minidom
 import zlib
 
 import h5py
 import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from program import run_in_folder
 
 
 def check_png(path, width):
@@ -46,13 +47,13 @@ def rows_of(path):
     return {name: re.findall("<td>(.*?)</td>", cells) for name, cells in re.findall("<tr><th>(.*?)</th>(.*?)</tr>", table)}
 
 
-def check_figures(run):
+def check_figures(program):
     """Two results on one page, one of them with a cell that is turned over: the figures are those of the files."""
     shutil.copy("hills.h5", "folded.h5")
     with h5py.File("folded.h5", "r+") as file:
         file["/cell/ratio"][7] = -0.25
         file.attrs["folds"] = 1
-    run("report", "hills.h5", "folded.h5", "-o", "both.html", "-width", "400")
+    program.succeed("report", "hills.h5", "folded.h5", "-o", "both.html", "-width", "400")
     rows = rows_of("both.html")
     with h5py.File("hills.h5", "r") as file:
         worst = numpy.argsort(-numpy.abs(numpy.log(file["/cell/ratio"][...])), kind="stable")[:6].tolist()
@@ -63,7 +64,7 @@ def check_figures(run):
         assert abs(float(deviation) / file.attrs["ratio_weighted_sd"] - 1) < 1e-3, (deviation, file.attrs["ratio_weighted_sd"])
 
 
-def check_old(run):
+def check_old(program):
     """A file of the first layout: texts of fixed length, no weighted figures, fewer arrays."""
     shutil.copy("hills.h5", "old.h5")
     with h5py.File("old.h5", "r+") as file:
@@ -75,84 +76,73 @@ def check_old(run):
                 del file.attrs[name]
         for path in ("/history/gradient_norm", "/cell/quasi_conformal", "/histogram"):
             del file[path]
-    run("report", "old.h5", "-o", "old.html", "-width", "400")
+    program.succeed("report", "old.h5", "-o", "old.html", "-width", "400")
     assert rows_of("old.html")["SD of r, by area"] == rows_of("both.html")["SD of r, by area"][:1]
 
 
-def check_kinds(run):
+def check_kinds(program):
     """Angles, solids and correspondences have pages of their own kind; the camera goes where it is told."""
-    run("generate", "sphere", "-n", "200", "-o", "sphere.obj")
-    run("conformal", "sphere.obj", "-o", "angles.h5", expected=(0, 4))
-    run("report", "angles.h5", "-o", "angles.svg", "-width", "600")
+    program.succeed("generate", "sphere", "-n", "200", "-o", "sphere.obj")
+    program.succeed("conformal", "sphere.obj", "-o", "angles.h5", codes=(0, 4))
+    program.succeed("report", "angles.h5", "-o", "angles.svg", "-width", "600")
     with open("angles.svg", encoding="utf-8") as file:
         assert file.read().count("<image") >= 4  # the pictures; letters are glyphs
-    run("generate", "ball", "-n", "200", "-o", "ball.vtu")
-    run("ball", "ball.vtu", "-o", "ball.h5", expected=(0, 4))
-    run("report", "ball.h5", "-o", "ball.html", "-width", "600")
+    program.succeed("generate", "ball", "-n", "200", "-o", "ball.vtu")
+    program.succeed("ball", "ball.vtu", "-o", "ball.h5", codes=(0, 4))
+    program.succeed("report", "ball.h5", "-o", "ball.html", "-width", "600")
     assert "SD of r, by volume" in rows_of("ball.html") and rows_of("ball.html")["angle error, mean / median"] == ["–"]
-    run("generate", "cap", "-n", "300", "-o", "cap.obj")
+    program.succeed("generate", "cap", "-n", "300", "-o", "cap.obj")
     with open("pairs.csv", "w", encoding="utf-8") as file:
         file.write("a,b\n40,60\n200,120\n")
-    run("register", "hills.obj", "cap.obj", "-landmarks", "pairs.csv", "-o", "pair.h5", expected=(0, 4, 5))
+    program.succeed("register", "hills.obj", "cap.obj", "-landmarks", "pairs.csv", "-o", "pair.h5", codes=(0, 4, 5))
     with h5py.File("pair.h5", "r") as file:
         assert file["/register/landmarks/vertex"][...].tolist() == [40, 200]
         assert file["/register/landmarks/vertex_b"][...].tolist() == [60, 120]
-    run("report", "pair.h5", "-o", "pair.png", "-width", "600")
+    program.succeed("report", "pair.h5", "-o", "pair.png", "-width", "600")
     check_png("pair.png", 600)
     pages = []
     for view in (("-view", "0,10"), ("-view", "90,10"), ("-view", "0,10", "-up", "x")):
-        run("report", "hills.h5", "-o", "view.png", "-width", "400", *view)
+        program.succeed("report", "hills.h5", "-o", "view.png", "-width", "400", *view)
         with open("view.png", "rb") as file:
             pages.append(file.read())
     assert len(set(pages)) == 3
     for wrong in (("-view", "3"), ("-up", "w")):
-        run("report", "hills.h5", "-o", "wrong.png", *wrong, expected=(2,))
+        program.succeed("report", "hills.h5", "-o", "wrong.png", *wrong, codes=(2,))
 
 
-def main(equimap, ranks):
-    mpirun = ["mpirun", "-n", ranks, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-
-    def run(*arguments, expected=(0,)):
-        done = subprocess.run([*mpirun, equimap, *arguments], capture_output=True, text=True)
-        assert done.returncode in expected, (arguments, done.returncode, done.stderr[-2000:])
-        return done
-
-    run("generate", "hills", "-n", "800", "-o", "hills.obj")
-    run("disk", "hills.obj", "-o", "hills.h5", expected=(0, 4))
-    run("report", "hills.h5", "-o", "hills.png", "-width", "900")
+def main(program):
+    program.succeed("generate", "hills", "-n", "800", "-o", "hills.obj")
+    program.succeed("disk", "hills.obj", "-o", "hills.h5", codes=(0, 4))
+    program.succeed("report", "hills.h5", "-o", "hills.png", "-width", "900")
     check_png("hills.png", 900)
-    run("report", "hills.h5", "-o", "hills.svg")
+    program.succeed("report", "hills.h5", "-o", "hills.svg")
     xml.dom.minidom.parse("hills.svg")
-    run("report", "hills.h5", "-o", "hills.pdf")
+    program.succeed("report", "hills.h5", "-o", "hills.pdf")
     with open("hills.pdf", "rb") as file:
         data = file.read()
     assert data.startswith(b"%PDF-") and data.rstrip().endswith(b"%%EOF")
-    run("report", "hills.h5", "-o", "hills.html")
+    program.succeed("report", "hills.h5", "-o", "hills.html")
     with open("hills.html", encoding="utf-8") as file:
         page = file.read()
     assert "data:image/png;base64," in page and "hills.obj" in page and page.rstrip().endswith("</html>")
 
-    run("report", "hills.h5", "-o", "hills.docx", expected=(2,))
-    run("report", "hills.h5", expected=(2,))
-    run("report", "hills.h5", "-o", "new.png", "-nonsense", "3", expected=(2,))
-    run("report", "absent.h5", "-o", "new.png", expected=(6,))
-    run("report", "hills.obj", "-o", "new.png", expected=(6,))
-    run("report", "hills.h5", "-o", "absent/new.png", expected=(6,))
+    program.succeed("report", "hills.h5", "-o", "hills.docx", codes=(2,))
+    program.succeed("report", "hills.h5", codes=(2,))
+    program.succeed("report", "hills.h5", "-o", "new.png", "-nonsense", "3", codes=(2,))
+    program.succeed("report", "absent.h5", "-o", "new.png", codes=(6,))
+    program.succeed("report", "hills.obj", "-o", "new.png", codes=(6,))
+    program.succeed("report", "hills.h5", "-o", "absent/new.png", codes=(6,))
     with open("hills.h5", "rb") as file:
         data = file.read()
     with open("cut.h5", "wb") as file:
         file.write(data[: len(data) // 2])
-    run("report", "cut.h5", "-o", "new.png", expected=(6,))
+    program.succeed("report", "cut.h5", "-o", "new.png", codes=(6,))
     assert not [name for name in os.listdir() if name.startswith("new") or "tmp" in name or "docx" in name]
-    check_figures(run)
-    check_old(run)
-    check_kinds(run)
+    check_figures(program)
+    check_old(program)
+    check_kinds(program)
     print("report: png, svg, pdf and html drawn; figures are those of the results; wrong calls refused")
 
 
 if __name__ == "__main__":
-    program = os.path.abspath(sys.argv[1])
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        main(program, sys.argv[2] if len(sys.argv) > 2 else "1")
-        os.chdir("/")
+    run_in_folder(main)

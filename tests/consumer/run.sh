@@ -10,7 +10,9 @@ trap 'rm -rf "$work"' EXIT
 if [ "$(id -u)" -eq 0 ]; then
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-run() { mpirun -n 2 --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 "$@"; }
+launcher=${EQUIMAP_TEST_MPIEXEC:-mpiexec -n %n}
+# shellcheck disable=SC2086 # the launcher is words
+run() { ${launcher//%n/2} "$@"; }
 
 # Installed elsewhere than the build was configured for: both ways to find it must move along.
 cmake --install "$build" --prefix "$work/installed" >"$work/install.log" || { cat "$work/install.log"; exit 1; }

@@ -11,7 +11,9 @@ def read_obj(path):
 
 
 def write_obj(program, name, vertices, cells):
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in cells.tolist()]
+    """Arrays or lists of rows; cells count from 0."""
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in numpy.asarray(vertices, float).tolist()]
+    lines += [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in numpy.asarray(cells).tolist()]
     program.write(name, "\n".join(lines) + "\n")
 
 

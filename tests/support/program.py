@@ -1,6 +1,19 @@
-"""Run equimap as a user does, and look at what comes of it."""
+"""Run equimap as a user does, and check what comes of it."""
 import os
+import pathlib
+import shlex
 import subprocess
+import sys
+import tempfile
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "python" / "equimap"))
+import launch
+
+
+def launcher(ranks):
+    """The words that start so many ranks: those that CMake found, or without ctest those of the Python package."""
+    words = os.environ.get("EQUIMAP_TEST_MPIEXEC")
+    return shlex.split(words.replace("%n", str(ranks))) if words else launch.launcher(ranks)
 
 
 class Program:
@@ -16,8 +29,7 @@ class Program:
 
     def command(self, arguments, ranks=None):
         ranks = ranks or self.ranks
-        mpirun = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-        return [*(mpirun if ranks > 1 else []), self.path, *map(str, arguments)]  # one rank: as people run it
+        return [*(launcher(ranks) if ranks > 1 else []), self.path, *map(str, arguments)]  # one rank: as people run it
 
     def run(self, *arguments, ranks=None, timeout=120):
         """Run; a run that does not end is a failure of its own."""
@@ -64,3 +76,12 @@ class Program:
     def messages(self, result):
         """The program's own error messages: each begins with its name."""
         return [line for line in result.stderr.splitlines() if line.startswith("equimap: ")]
+
+
+def run_in_folder(main):
+    """Call `main` with the program of the command line, EQUIMAP [RANKS], in a new folder that is the working folder as well."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
+        os.chdir(folder)
+        main(program)
+        os.chdir("/")

@@ -5,32 +5,7 @@
 #include <equimap.h>
 #include "domain/domain_private.h"
 #include "solver/solver_private.h"
-#include <stdio.h>
-
-/* End all ranks with a message if `condition` does not hold; the other arguments are a format and its values. */
-#define CHECK(condition, ...)                                                                                          \
-  do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      fprintf(stderr, "%s:%d: not so: %s: ", __FILE__, __LINE__, #condition);                                          \
-      fprintf(stderr, __VA_ARGS__);                                                                                    \
-      fprintf(stderr, "\n");                                                                                           \
-      MPI_Abort(PETSC_COMM_WORLD, 1);                                                                                  \
-    }                                                                                                                  \
-  } while (0)
-
-/* `got` and `wanted` differ by no more than `tolerance` times `scale`. */
-#define CHECK_CLOSE(got, wanted, tolerance, scale)                                                                     \
-  CHECK(PetscAbsReal((got) - (wanted)) <= (tolerance) * (scale), "%.17g, not %.17g: off by %.3g of %.3g",              \
-        (double)(got), (double)(wanted), (double)(PetscAbsReal((got) - (wanted)) / (scale)), (double)(tolerance))
-
-/* An error is expected: its code must be `code`, and nobody prints it. */
-#define CHECK_FAILS(code, call)                                                                                        \
-  do {                                                                                                                 \
-    PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));                                                   \
-    const PetscErrorCode got_error = (call);                                                                           \
-    PetscCall(PetscPopErrorHandler());                                                                                 \
-    CHECK(got_error == (code), "error %d, not %d", (int)got_error, (int)(code));                                       \
-  } while (0)
+#include "support/checks.h"
 
 /* A number in [-1, 1] that belongs to an input vertex, and so is the same on any number of ranks. */
 static inline PetscReal TestRandom(PetscInt seed, PetscInt vertex, PetscInt channel)

@@ -2,18 +2,8 @@
    makes of it. */
 #include <equimap/soup.h>
 #include "mesh/mesh_private.h"
-#include <stdio.h>
+#include "support/checks.h"
 #include <string.h>
-
-#define CHECK(condition, ...)                                                                                          \
-  do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      fprintf(stderr, "%s:%d: not so: %s: ", __FILE__, __LINE__, #condition);                                          \
-      fprintf(stderr, __VA_ARGS__);                                                                                    \
-      fprintf(stderr, "\n");                                                                                           \
-      MPI_Abort(PETSC_COMM_WORLD, 1);                                                                                  \
-    }                                                                                                                  \
-  } while (0)
 
 /* A mesh under construction, the same on every rank; rank 0's copy becomes the soup. */
 typedef struct {

@@ -1,17 +1,7 @@
 /* Test shapes and refinement: the topology that they promise, the same mesh on any number of ranks. */
 #include <equimap/soup.h>
 #include "mesh/mesh_private.h"
-#include <stdio.h>
-
-#define CHECK(condition, ...)                                                                                          \
-  do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      fprintf(stderr, "%s:%d: not so: %s: ", __FILE__, __LINE__, #condition);                                          \
-      fprintf(stderr, __VA_ARGS__);                                                                                    \
-      fprintf(stderr, "\n");                                                                                           \
-      MPI_Abort(PETSC_COMM_WORLD, 1);                                                                                  \
-    }                                                                                                                  \
-  } while (0)
+#include "support/checks.h"
 
 typedef struct {
   const char *name;

@@ -7,9 +7,7 @@
 #include <unistd.h>
 #include "h5/h5.h"
 #include "store/map_private.h"
-
-#define CHECK(condition)                                                                                               \
-  PetscCheck(condition, PETSC_COMM_SELF, PETSC_ERR_PLIB, "line %d: not true: %s", __LINE__, #condition)
+#include "support/checks.h"
 
 /* This rank's part of `total` things; the last ranks get nothing when there are more ranks than things. */
 static void Deal(PetscInt total, PetscInt *start, PetscInt *end)
@@ -241,15 +239,6 @@ static PetscErrorCode TestTexts(void)
   PetscFunctionReturn(0);
 }
 
-/* Errors are expected: let nobody print them. */
-#define EXPECT(code, call)                                                                                             \
-  do {                                                                                                                 \
-    PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));                                                   \
-    const PetscErrorCode got = (call);                                                                                 \
-    PetscCall(PetscPopErrorHandler());                                                                                 \
-    CHECK(got == (code));                                                                                              \
-  } while (0)
-
 static PetscErrorCode TestFailures(void)
 {
   EqmMap map, back;
@@ -262,18 +251,18 @@ static PetscErrorCode TestFailures(void)
   PetscCall(MakeStrip(12, &soup));
   PetscCall(MakeStrip(13, &other));
   PetscCall(MakeMap(soup, 2, 3, &map));
-  EXPECT(EQM_ERR_IO, EqmMapWrite(map, "no/such/directory/x.h5"));
-  EXPECT(EQM_ERR_IO, EqmMapCheckWritable(PETSC_COMM_WORLD, "no/such/directory/x.h5"));
-  EXPECT(EQM_ERR_IO, EqmMapWriteSummary(map, "no/such/directory/x.json"));
-  EXPECT(EQM_ERR_IO, EqmMapWriteHistory(map, "no/such/directory/x.csv"));
-  EXPECT(EQM_ERR_USAGE, EqmMapCheckWritable(PETSC_COMM_WORLD, "x.h5,x.docx"));
-  EXPECT(EQM_ERR_USAGE, EqmMapWrite(map, "x.docx"));
-  EXPECT(EQM_ERR_IO, EqmMapRead(soup, "test_store.csv.h5", &back));
+  CHECK_FAILS(EQM_ERR_IO, EqmMapWrite(map, "no/such/directory/x.h5"));
+  CHECK_FAILS(EQM_ERR_IO, EqmMapCheckWritable(PETSC_COMM_WORLD, "no/such/directory/x.h5"));
+  CHECK_FAILS(EQM_ERR_IO, EqmMapWriteSummary(map, "no/such/directory/x.json"));
+  CHECK_FAILS(EQM_ERR_IO, EqmMapWriteHistory(map, "no/such/directory/x.csv"));
+  CHECK_FAILS(EQM_ERR_USAGE, EqmMapCheckWritable(PETSC_COMM_WORLD, "x.h5,x.docx"));
+  CHECK_FAILS(EQM_ERR_USAGE, EqmMapWrite(map, "x.docx"));
+  CHECK_FAILS(EQM_ERR_IO, EqmMapRead(soup, "test_store.csv.h5", &back));
   PetscCall(EqmMapWrite(map, "test_store.h5"));
-  EXPECT(EQM_ERR_MESH, EqmMapRead(other, "test_store.h5", &back));
+  CHECK_FAILS(EQM_ERR_MESH, EqmMapRead(other, "test_store.h5", &back));
   PetscCall(EqmMapAddCount(map, "format_version", 99)); /* replaces the version that is */
   PetscCall(EqmMapWrite(map, "future.h5"));
-  EXPECT(EQM_ERR_IO, EqmMapRead(soup, "future.h5", &back));
+  CHECK_FAILS(EQM_ERR_IO, EqmMapRead(soup, "future.h5", &back));
   map->num_figures = 0;
 
   /* /dev/full takes a file's bytes and gives none back: a link there is a full disk for anyone. */
@@ -285,8 +274,8 @@ static PetscErrorCode TestFailures(void)
     CHECK(truncate("test_store.h5", 100) == 0);
   }
   PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
-  EXPECT(EQM_ERR_IO, EqmMapWriteSummary(map, "test_store_full.json"));
-  EXPECT(EQM_ERR_IO, EqmMapRead(soup, "test_store.h5", &back)); /* cut short */
+  CHECK_FAILS(EQM_ERR_IO, EqmMapWriteSummary(map, "test_store_full.json"));
+  CHECK_FAILS(EQM_ERR_IO, EqmMapRead(soup, "test_store.h5", &back)); /* cut short */
   PetscCall(EqmMapWrite(map, "test_store.h5"));
   PetscCall(Slurp("test_store.h5", &after));
   CHECK(memcmp(before, "\211HDF", 4) == 0 && memcmp(after, "\211HDF", 4) == 0);
@@ -312,8 +301,8 @@ static PetscErrorCode TestOldFileSurvives(void)
   PetscCall(EqmH5Create(PETSC_COMM_WORLD, "test_store.h5", &h5));
   PetscCall(EqmH5DeclareReals(h5, "/map/coordinates", 3, 2)); /* one-dimensional values will not fit */
   PetscCall(EqmH5Reserve(h5));
-  EXPECT(EQM_ERR_IO, EqmH5WriteReals(h5, "/map/coordinates", wrong, values));
-  EXPECT(EQM_ERR_IO, EqmH5WriteReals(h5, "/absent", wrong, values));
+  CHECK_FAILS(EQM_ERR_IO, EqmH5WriteReals(h5, "/map/coordinates", wrong, values));
+  CHECK_FAILS(EQM_ERR_IO, EqmH5WriteReals(h5, "/absent", wrong, values));
   CHECK(stat(h5->atomic.temporary, &status) == 0);
   char temporary[PETSC_MAX_PATH_LEN];
   PetscCall(PetscStrncpy(temporary, h5->atomic.temporary, sizeof(temporary)));
