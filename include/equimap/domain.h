@@ -26,7 +26,7 @@ typedef struct {
   /* Progress from p to its neighbour q along the boundary; NULL: the boundary is no curve. */
   PetscReal (*advance)(const PetscReal *p, const PetscReal *q);
   PetscReal curvature;  /* geodesics of unit speed have the acceleration -curvature x */
-  PetscBool is_free[3]; /* does this coordinate move as it likes, whatever the others do? */
+  PetscBool is_free[3]; /* is this coordinate free, independently of the others? */
 } EqmVertexMotion;
 enum { EQM_DOFS_OF_SPACE = -1, EQM_MAX_MOTIONS = 8 };
 
@@ -47,20 +47,20 @@ typedef struct {
                        of EqmMotionAngles the two angles; NULL where there are none such */
 } EqmPlace;
 
-/* Where each vertex of a mesh may go, and how it gets there. */
+/* The manifold of each vertex of a mesh, and motions on it. */
 typedef struct _p_EqmDomain *EqmDomain;
 
-/* What steers the creation of a domain; each takes what concerns it. */
+/* Settings of a new domain; each kind of domain uses its own. */
 typedef struct {
   const PetscInt *corners;     /* square: four input vertex numbers; NULL: at quarters of the boundary's arc length */
   const char *boundary_angles; /* disk: a CSV file of boundary vertices and the angles that hold them; NULL: none */
 } EqmDomainOptions;
-/* A domain as it is registered: a name, and how it is made for a mesh. */
+/* The type of a domain: a name, and a function that creates it for a mesh. */
 typedef struct {
   const char *name;
   PetscErrorCode (*create)(EqmMesh, const EqmDomainOptions *, EqmDomain *);
 } EqmDomainType;
-/* Make a domain known; `type` must outlive the program's use of it. Not collective. */
+/* Register a domain; `type` must outlive the program's use of it. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainRegister(const EqmDomainType *type);
 /* A domain by name, for a mesh; `options` may be NULL. Errors: EQM_ERR_USAGE (no such domain), EQM_ERR_MESH.
  * Collective. */
@@ -80,8 +80,8 @@ PETSC_EXTERN PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt c
 /* "sphere", the unit sphere: every vertex on it (001 (2.1)). The mesh must be closed, of genus 0. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateSphere(EqmMesh mesh, EqmDomain *domain);
 /* "ball", the unit ball: boundary vertices on the sphere, the others free in space (003 section 3); with `angles`, as
-   "spherical-ball", they move by their spherical coordinates (003 (4), (5)): no isometry, but the coordinates that 003
-   Algorithm 1 is written in. The mesh must be a solid. Collective. */
+   "spherical-ball", their degrees of freedom are spherical coordinates (003 (4), (5)): no isometry, but the coordinates
+   that 003 Algorithm 1 is written in. The mesh must be a solid. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateBall(EqmMesh mesh, PetscBool angles, EqmDomain *domain);
 PETSC_EXTERN PetscErrorCode EqmDomainDestroy(EqmDomain *domain);
 
@@ -111,7 +111,7 @@ PETSC_EXTERN PetscErrorCode EqmDomainCurvature(EqmDomain domain, const EqmPlace 
    no curve. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place, PetscBool *in_order);
 /* ---- Mobius maps of the sphere (src/domain/moebius.c); they choose new frames */
-/* x -> (1 - |c|^2) (x + c) / |x + c|^2 + c for |c| < 1: conformal, pulls everything towards c / |c|. Not collective. */
+/* x -> (1 - |c|^2) (x + c) / |x + c|^2 + c for |c| < 1: conformal, moves everything towards c / |c|. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmPlaceShift(EqmDomain domain, const PetscReal c[3], EqmPlace *place);
 /* x -> (x - center) / |x - center| for owned vertices, ghosts from their owners (004 Algorithm 5.1, lines 10 and 18):
    no Mobius map. A vertex at the centre goes to the north pole. Collective. */

@@ -1,13 +1,13 @@
 /* Energies of maps: loops over image simplices, the normalised authalic energy, Laplacians, the angle energy.
 
-   Notation of the house: w cell weight (sums to one over the mesh), a signed image measure, A = sum a, ratio r =
+   Notation: w cell weight (sums to one over the mesh), a signed image measure, A = sum a, ratio r =
    (a/w)/A. All loops are owner-computes over fixed blocks: the same bits for any number of threads. */
 #ifndef EQUIMAP_ENERGY_H
 #define EQUIMAP_ENERGY_H
 
 #include <equimap/domain.h>
 
-/* Totals of one look at a map. */
+/* Sums over the cells of a map. */
 typedef struct {
   PetscReal total;    /* A */
   PetscReal energy;   /* A sum w (r - 1)^2 */
@@ -65,7 +65,7 @@ typedef enum {
   EQM_LAPLACIAN_COTANGENT, /* of the mesh: Dirichlet energy (000 L_S(id)) */
   EQM_LAPLACIAN_STRETCH    /* of the present image: L_S (000 (2d)), of solids L_V (003 (3), corrected) */
 } EqmLaplacianKind;
-/* The weights of a Laplacian of that kind; `place` is looked at by EQM_LAPLACIAN_STRETCH alone. Not collective. */
+/* The weights of a Laplacian of that kind; `place` is used by EQM_LAPLACIAN_STRETCH only. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmLaplacianWeights(EqmDomain domain, EqmLaplacianKind kind, const EqmPlace *place,
                                                 PetscReal *weights);
 /* y = L x for `width` components; x per local vertex, y per owned vertex. Not collective. */

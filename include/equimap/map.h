@@ -187,7 +187,7 @@ PETSC_EXTERN PetscErrorCode EqmMapWriteTexture(EqmMap map, const char *file);
 PETSC_EXTERN PetscErrorCode EqmMapCheckWritable(MPI_Comm comm, const char *files);
 /* EqmMapWriteSummary - the figures of a run as JSON. Collective; rank 0 writes. Errors: EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWriteSummary(EqmMap map, const char *file);
-/* EqmMapViewRatios - print the lines of a table for people that say how far the ratios are from one: weighted by
+/* EqmMapViewRatios - print the lines of a table on how far the ratios are from one: weighted by
    measure first, then over cells, and what slivers add. Collective; rank 0 prints. */
 PETSC_EXTERN PetscErrorCode EqmMapViewRatios(EqmMap map);
 /* EqmMapWriteHistory - a row per iteration as CSV with a header, all digits. Collective; rank 0 writes. Errors:

@@ -58,7 +58,7 @@ PETSC_EXTERN PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver);
 typedef enum {
   EQM_MONITOR_BEGIN,     /* the method is ready for its first step; `text` describes the linear solver, or is empty */
   EQM_MONITOR_ITERATION, /* the history has a new row */
-  EQM_MONITOR_NOTE,      /* `text` is a line for people, which ends in a newline */
+  EQM_MONITOR_NOTE,      /* `text` is a line for the user, which ends in a newline */
   EQM_MONITOR_END        /* status and message are final */
 } EqmMonitorEvent;
 /* A function that is called for such events; `context` is that of EqmSolverSetMonitor. Collective. */
@@ -66,7 +66,7 @@ typedef PetscErrorCode (*EqmMonitor)(EqmSolver solver, EqmMonitorEvent event, co
 /* EqmSolverSetMonitor - call `monitor` as the solver gets on, on every rank; NULL (as created): nothing. The option
    -quiet takes it away. */
 PETSC_EXTERN PetscErrorCode EqmSolverSetMonitor(EqmSolver solver, EqmMonitor monitor, void *context);
-/* EqmSolverMonitorText - a monitor for people, what the program shows: one line that renews itself on a terminal, plain
+/* EqmSolverMonitorText - the program's text monitor: one line that is overwritten on a terminal, plain
    lines now and then elsewhere. `context` is not used. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverMonitorText(EqmSolver solver, EqmMonitorEvent event, const char *text,
                                                  void *context);

@@ -1,5 +1,5 @@
 /* What a mesh file says and nothing more: vertices and cells in input numbering, dealt to the ranks in contiguous
-   slabs. Readers make it, the diagnosis looks at it, the mesh is built from it. */
+   slabs. Readers create it, the diagnosis examines it, the mesh is built from it. */
 #ifndef EQUIMAP_SOUP_H
 #define EQUIMAP_SOUP_H
 

@@ -6,12 +6,12 @@
 
 typedef struct _EqmCatalogue EqmCatalogue; /* the command's options: catalogue.h */
 
-/* What the command line says beside options: `equimap COMMAND MESH [MORE] -options`. */
+/* The parts of the command line that are not options: `equimap COMMAND MESH [MORE] -options`. */
 typedef struct {
   const char *command;
   int num_arguments;
   const char *argument[8];
-  PetscBool help;          /* COMMAND --help: ask for every option, print notes and return */
+  PetscBool help;          /* COMMAND --help: read every option, print notes and return */
   const char *help_format; /* --help=FORMAT: text, man, json, words; NULL: text */
   PetscBool version;
   int num_options_files;
@@ -21,9 +21,9 @@ typedef struct {
   char **words; /* what the others point into, with a NULL at the end */
 } EqmCommandLine;
 
-/* A command: with line->help asks for every option between PetscOptionsBegin and PetscOptionsEnd, prints with
-   PetscPrintf what else there is to say, and returns; else runs collectively on PETSC_COMM_WORLD; sets the status that
-   becomes the exit code when it returns 0. */
+/* A command: with line->help it reads every option between PetscOptionsBegin and PetscOptionsEnd, prints its notes with
+   PetscPrintf, and returns; else it runs collectively on PETSC_COMM_WORLD; sets the status that becomes the exit code
+   when it returns 0. */
 typedef PetscErrorCode (*EqmCommand)(const EqmCommandLine *line, EqmStatus *status);
 
 PETSC_INTERN PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status); /* disk, square, ... */
@@ -34,9 +34,9 @@ PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmSta
 PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
 
-/* How the work is laid out: -threads, which main takes before any command (asked again to be listed by --help), and
-   what belongs to the mesh. Collective. */
-PETSC_INTERN PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject);
+/* Options of the parallel layout: -threads, which main reads before any command (read again so that --help lists it),
+   and those of the mesh. Collective. */
+PETSC_INTERN PetscErrorCode EqmLayoutHelpOptions(PetscOptionItems *PetscOptionsObject);
 /* -resume: where the file of -checkpoint is there already, it becomes that of -restart. Errors: EQM_ERR_USAGE.
    Collective. */
 PETSC_INTERN PetscErrorCode EqmTakeResume(void);
@@ -46,11 +46,11 @@ PETSC_INTERN PetscErrorCode EqmForgetForeignOptions(void);
 /* Fail with EQM_ERR_USAGE if an option of the command has no value, one that does not fit its kind, or the name of a
    folder where a file is written. Collective. */
 PETSC_INTERN PetscErrorCode EqmCheckOptionValues(const EqmCommandLine *line);
-/* Fail with EQM_ERR_USAGE if an option was given that nobody asked for, and name the nearest; of a foreign one say so
-   only. Call after all options have been read, before the work starts. Collective. */
+/* Fail with EQM_ERR_USAGE if an option was given that no code has read, and name the nearest; of a foreign one only
+   warn. Call after all options have been read, before the work starts. Collective. */
 PETSC_INTERN PetscErrorCode EqmRejectUnknownOptions(const EqmCommandLine *line);
-/* Options of matrices, vectors and solvers are known only when these are made: say after the run which of them nobody
-   asked for. Collective. */
+/* Options of matrices, vectors and solvers are read only when these are created: warn after the run of those that were
+   not read. Collective. */
 PETSC_INTERN PetscErrorCode EqmWarnOfUnusedOptions(void);
 
 #endif

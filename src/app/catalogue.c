@@ -1,10 +1,10 @@
-/* The options that a command asks for, taken from what PETSc would print of them under -help. */
+/* The options that a command reads, collected from PETSc's output under -help. */
 #include "catalogue.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-/* PETSc hands its help to one function without a context: this is where that function writes. */
+/* PETSc passes its help text to a function without a context argument: this is its context. */
 static EqmCatalogue *open_catalogue;
 
 enum { LONGEST = 4096 };
@@ -74,7 +74,7 @@ static EqmOptionKind KindOf(const char *format, PetscBool is_list, const char *i
 }
 
 /* "  -name <now X : formerly Y>: purpose (page)"; a list of numbers comes in pieces, "  -name <3", ",5", ">: purpose".
-   An option that is asked for again keeps its first place and text. */
+   An option that is read again keeps its first position and text. */
 static PetscErrorCode AddOption(const char *format, const char *text)
 {
   EqmCatalogue *const c = open_catalogue;
@@ -101,7 +101,7 @@ static PetscErrorCode AddOption(const char *format, const char *text)
   PetscFunctionReturn(0);
 }
 
-/* In the place of PetscHelpPrintf. All ranks note the same. */
+/* Replaces PetscHelpPrintf. All ranks record the same. */
 static PetscErrorCode Note(MPI_Comm comm, const char format[], ...)
 {
   static const char rule[] = "----------------------------------------\n";
@@ -126,7 +126,7 @@ static PetscErrorCode Note(MPI_Comm comm, const char format[], ...)
   PetscFunctionReturn(0);
 }
 
-/* In the place of PetscVFPrintf, through which PetscPrintf prints on rank 0. */
+/* Replaces PetscVFPrintf, through which PetscPrintf prints on rank 0. */
 static PetscErrorCode NotePrinted(FILE *stream, const char format[], va_list arguments)
 {
   char text[LONGEST];
@@ -137,7 +137,7 @@ static PetscErrorCode NotePrinted(FILE *stream, const char format[], va_list arg
   PetscFunctionReturn(0);
 }
 
-/* What was asked for twice is listed once, in its first place. */
+/* List options that were read twice once, in their first position. */
 static PetscErrorCode DropRepeated(EqmCatalogue *catalogue)
 {
   int kept = 0;
@@ -158,7 +158,7 @@ static PetscErrorCode DropRepeated(EqmCatalogue *catalogue)
   PetscFunctionReturn(0);
 }
 
-/* What main takes before any command does. */
+/* The options that main reads before any command does. */
 static PetscErrorCode AddProgramOptions(void)
 {
   static const char format[] = "  -%s <now %s : formerly %s>: %s (%s)\n";

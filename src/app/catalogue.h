@@ -1,5 +1,5 @@
-/* Every option that a command asks for: name, kind, default, purpose. Help, man pages and completion are made of it,
-   and what the user gave is held against it. */
+/* Every option that a command reads: name, kind, default, purpose. Help, man pages and completion are made of it, and
+   the user's options are checked against it. */
 #ifndef EQM_CATALOGUE_H
 #define EQM_CATALOGUE_H
 
@@ -29,10 +29,10 @@ struct _EqmCatalogue {
   int num_options, num_sections;
   EqmOption *option; /* each name once */
   char (*section)[128];
-  char *notes; /* what the command says beside its options, on rank 0 */
+  char *notes; /* the command's notes beside its options, on rank 0 */
 };
 
-/* Let `run` ask for its options with an empty database and note them. Collective on PETSC_COMM_WORLD. */
+/* Let `run` read its options with an empty database and record them. Collective on PETSC_COMM_WORLD. */
 PETSC_INTERN PetscErrorCode EqmCatalogueCreate(EqmCommand run, const EqmCommandLine *line, EqmCatalogue *catalogue);
 PETSC_INTERN PetscErrorCode EqmCatalogueDestroy(EqmCatalogue *catalogue);
 /* A word for the kind of value: "N", "X", ... Not collective. */

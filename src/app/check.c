@@ -1,4 +1,4 @@
-/* equimap check MESH: what the mesh is, what is wrong with it, what each command would say. */
+/* equimap check MESH: what the mesh is, its defects, and each command's verdict. */
 #include "app.h"
 #include "mesh/mesh_private.h"
 #include "base/atomicfile.h"
@@ -102,7 +102,7 @@ static PetscErrorCode PrintLines(const char *indent, const char *text, PetscBool
   PetscFunctionReturn(0);
 }
 
-/* Ask for every target, and print its answer: good news, or the first thing that stands against it. */
+/* Print the verdict for every target: that the mesh can be mapped, or the first reason against it. */
 static PetscErrorCode PrintVerdicts(CheckReport *report)
 {
   char text[EQM_MESSAGE_MAX], head[32];

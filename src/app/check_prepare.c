@@ -19,7 +19,7 @@ static void AddSteps(cJSON *entry, const EqmPreparation *preparation)
   }
 }
 
-/* Prepare the mesh for a target, and say what comes of it. */
+/* Prepare the mesh for a target, and report the result. */
 static PetscErrorCode TryTarget(EqmSoup soup, const EqmTarget *target, PetscBool is_first, cJSON *all)
 {
   char text[EQM_MESSAGE_MAX], steps[EQM_MESSAGE_MAX];

@@ -1,4 +1,4 @@
-/* The command line: what is the program's, and what is left for PETSc, in PETSc's form. */
+/* The command line: split into the program's words and PETSc's options. */
 #include "commandline.h"
 #include <ctype.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 static const char *const flags[] = {"-quiet",    "-help",         "-repair", "-dry_run",
                                     "-log_view", "-options_left", "-unique", "-version"};
 
-/* ... but these words, which no mesh is called. */
+/* ... except these words, which are taken for values. */
 static const char *const truths[] = {"0", "1", "true", "false", "yes", "no", "on", "off"};
 #define IS_ONE_OF(word, list) IsOneOf(word, list, sizeof(list) / sizeof((list)[0]))
 

@@ -1,4 +1,4 @@
-/* The table of commands, and what the program says about itself. */
+/* The table of commands; usage, version and man page of the program. */
 #include "commands.h"
 #include "base/nearest.h"
 #include "mesh/target.h"

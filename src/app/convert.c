@@ -1,4 +1,4 @@
-/* equimap convert IN OUT: from one mesh format to another, mended, refined or peeled on the way. */
+/* equimap convert IN OUT: from one mesh format to another, repaired or refined, or the surface of a solid. */
 #include "app.h"
 #include "mesh/mesh_private.h"
 #include "mesh/target.h"

@@ -1,4 +1,4 @@
-/* COMMAND --help: the options in sections, for people. */
+/* COMMAND --help: the options in sections, as plain text. */
 #include "catalogue.h"
 #include <stdio.h>
 #include <string.h>
@@ -50,7 +50,7 @@ static void PrintOption(const EqmOption *option)
   if (option->choices) PrintWrapped(option->choices);
 }
 
-/* Those of a section that begin alike and say so come under a heading of their own, behind the others. */
+/* Options of one method, which begin with its name, come under a heading of their own, behind the others. */
 static void PrintSection(const EqmCatalogue *catalogue, int section)
 {
   const EqmOption *const end = catalogue->option + catalogue->num_options, *title = NULL;
@@ -79,13 +79,13 @@ static void PrintSection(const EqmCatalogue *catalogue, int section)
   }
 }
 
-/* Does the line go on the paragraph before it? */
+/* Does the line continue the paragraph before it? */
 static PetscBool GoesOn(const char *line)
 {
   return (PetscBool)(*line && !strchr(" \n", *line) && strncmp(line, "usage:", 6));
 }
 
-/* What the command says beside its options. A paragraph that begins with too long a line is broken anew. */
+/* The command's notes beside its options. A paragraph that begins with too long a line is wrapped again. */
 void EqmHelpNotes(const EqmCatalogue *catalogue)
 {
   const char *text = catalogue->notes ? catalogue->notes : "";

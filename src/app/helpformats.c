@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Text in roff: a backslash, a dash, and a dot or a quote at the beginning of a line mean something else there. */
+/* Text in roff: a backslash, a dash, and a dot or a quote at the beginning of a line have a special meaning there. */
 static void PrintRoff(const char *text)
 {
   for (const char *c = text; *c; c++) {

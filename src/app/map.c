@@ -21,7 +21,7 @@ typedef struct {
   PetscBool dry_run;
 } MapOptions;
 
-static PetscErrorCode AskOptions(MapOptions *options)
+static PetscErrorCode ReadOptions(MapOptions *options)
 {
   PetscFunctionBegin;
   EqmPrepareOptionsInit(&options->input.prepare);
@@ -60,7 +60,7 @@ static PetscErrorCode AskOptions(MapOptions *options)
                             "compute so many of the smallest eigenvalues of the energy's Hessian at the result (needs "
                             "a build with SLEPc)",
                             NULL, options->hessian_eigenvalues, &options->hessian_eigenvalues, NULL));
-  PetscCall(EqmAskLayout(PetscOptionsObject));
+  PetscCall(EqmLayoutHelpOptions(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-dry_run", "look at options, mesh and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();
@@ -87,7 +87,7 @@ static PetscErrorCode CheckTexture(const char *command, const char *file)
   PetscFunctionReturn(0);
 }
 
-/* Refuse before the long run what would be refused after it. */
+/* Check before the run what would fail after it. */
 static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *options)
 {
   const char *const mesh = options->input.mesh;
@@ -193,7 +193,7 @@ static PetscErrorCode PrintWork(MPI_Comm comm, const EqmMapCost *cost)
   PetscFunctionReturn(0);
 }
 
-/* The mesh that was mapped in the file's place. */
+/* The prepared mesh that was mapped in place of the file's. */
 static PetscErrorCode PrintPrepared(MPI_Comm comm, EqmMap prepared)
 {
   const EqmDistortion *d;
@@ -209,7 +209,7 @@ static PetscErrorCode PrintPrepared(MPI_Comm comm, EqmMap prepared)
   PetscFunctionReturn(0);
 }
 
-/* A closing table for people: the map of the file's mesh, and that of the prepared mesh if there is one. */
+/* Print the result table: the map of the file's mesh, and that of the prepared mesh if there is one. */
 static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map, EqmMap prepared)
 {
   const EqmDistortion *d;
@@ -291,8 +291,8 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   EqmIntake input;
 
   PetscFunctionBegin;
-  PetscCall(AskOptions(&options));
-  /* asks for every option: with --help it lists them, without it the unknown ones stand out */
+  PetscCall(ReadOptions(&options));
+  /* reads every option: with --help to list them, without it to find the unknown ones */
   PetscCall(EqmSolverHelp(PETSC_COMM_WORLD, line->command));
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));

@@ -152,7 +152,7 @@ static PetscErrorCode Write(const MeasureOptions *options, Measured *m)
   PetscFunctionReturn(0);
 }
 
-/* What has no area or volume, or no position, has no ratio. */
+/* Cells without area or volume, or without positions, have no ratio: refused. */
 static PetscErrorCode CheckMeasurable(EqmSoup soup)
 {
   EqmDiagnosis diagnosis;
@@ -171,7 +171,7 @@ static PetscErrorCode CheckMeasurable(EqmSoup soup)
   PetscFunctionReturn(0);
 }
 
-/* A result holds the map itself; every other file an image. */
+/* A result has the map itself; every other file an image. */
 static PetscErrorCode ReadMap(const MeasureOptions *options, const char *file, Measured *m)
 {
   const EqmFormat *const format = EqmFormatOfSuffix(file);
@@ -285,7 +285,7 @@ static PetscErrorCode ReadOptions(MeasureOptions *options)
   PetscFunctionReturn(0);
 }
 
-/* Refuse before the work what would be refused after it. */
+/* Check before the work what would fail after it. */
 static PetscErrorCode CheckOutputs(const EqmCommandLine *line, const MeasureOptions *options)
 {
   const char *const files[] = {options->output,  options->cells,     options->vertices,

@@ -1,11 +1,10 @@
-/* Options: those that commands share; those that nobody asked for, which are mistakes, and a mistake is said before the
-   work starts, not after. */
+/* Options that commands share, and unknown options, which are errors before the work starts. */
 #include "base/nearest.h"
 #include "catalogue.h"
 #include <string.h>
 #include <strings.h>
 
-/* What PETSc asks for later than we do, when it ends or in the middle of the work. */
+/* Options that PETSc reads later, during the work or in PetscFinalize. */
 static const char *const late_names[] = {
     "build_twosided",    "citations",     "debugger_pause", "debugger_ranks",
     "get_total_flops",   "log_threshold", "log_view",       "log_view_memory",
@@ -14,7 +13,7 @@ static const char *const late_names[] = {
     "nox_warning",       "objects_dump",  "options_left",   "options_suppress_deprecated_warnings",
     "options_view",      "random_seed",   "random_type",    "shared_tmp"};
 
-/* What its matrices, vectors and solvers ask for when they are made: all that begins so. */
+/* Prefixes of options that PETSc's matrices, vectors and solvers read when they are created. */
 static const char *const late_prefixes[] = {"hessian_eps_",
                                             "hessian_st_",
                                             "mat_",
@@ -32,12 +31,12 @@ static const char *const late_prefixes[] = {"hessian_eps_",
                                             "vecscatter_",
                                             "vec_"};
 
-/* The options that were let through for their beginnings. */
+/* The options that were accepted for their prefixes. */
 enum { MOST_TRUSTED = 32, LONGEST_NAME = 128 };
 static char trusted[MOST_TRUSTED][LONGEST_NAME];
 static PetscInt num_trusted;
 
-/* What PETSc has read before the command line: a petscrc file and PETSC_OPTIONS, which may be meant for others. */
+/* Options from a petscrc file and PETSC_OPTIONS, which may be meant for other programs. */
 static char **foreign;
 static PetscInt num_foreign;
 
@@ -49,7 +48,7 @@ static PetscBool IsLate(const char *name)
   return PETSC_FALSE;
 }
 
-/* May an object ask for it later? EqmWarnOfUnusedOptions knows. */
+/* May an object read it later? EqmWarnOfUnusedOptions checks that. */
 static PetscBool IsTrusted(const char *name)
 {
   for (size_t k = 0; k < sizeof(late_prefixes) / sizeof(late_prefixes[0]); k++) {
@@ -61,9 +60,9 @@ static PetscBool IsTrusted(const char *name)
   return PETSC_FALSE;
 }
 
-PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject)
+PetscErrorCode EqmLayoutHelpOptions(PetscOptionItems *PetscOptionsObject)
 {
-  PetscInt threads = -1; /* main has taken it */
+  PetscInt threads = -1; /* main has read it */
   PetscBool resume = PETSC_FALSE;
 
   PetscFunctionBegin;
@@ -74,7 +73,7 @@ PetscErrorCode EqmAskLayout(PetscOptionItems *PetscOptionsObject)
   PetscCall(PetscOptionsBool("-resume",
                              "go on from -checkpoint if it is there, else begin: the same command the first time and "
                              "after every interruption",
-                             NULL, resume, &resume, NULL)); /* EqmTakeResume has */
+                             NULL, resume, &resume, NULL)); /* EqmTakeResume has read it */
   PetscFunctionReturn(0);
 }
 
@@ -149,7 +148,7 @@ PetscErrorCode EqmForgetForeignOptions(void)
   PetscFunctionReturn(0);
 }
 
-/* Write "-name" behind the others, with the nearest name that the command has. */
+/* Append "-name", with the nearest name that the command has. */
 static PetscErrorCode AddUnknown(const EqmCatalogue *catalogue, const char *name, char *unknown, size_t length)
 {
   const int num = catalogue ? catalogue->num_options : 0;
@@ -203,7 +202,8 @@ PetscErrorCode EqmWarnOfUnusedOptions(void)
   PetscBool dry_run = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-dry_run", &dry_run, NULL)); /* then nothing was made that could ask */
+  PetscCall(
+      PetscOptionsGetBool(NULL, NULL, "-dry_run", &dry_run, NULL)); /* then no object was created that could read it */
   for (PetscInt k = 0; k < num_trusted && !dry_run; k++) {
     PetscBool used;
     PetscCall(PetscOptionsUsed(NULL, trusted[k], &used));

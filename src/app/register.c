@@ -15,7 +15,7 @@ static const char manual[] =
     "closed surfaces of genus 0, or both solid balls. What is no result is mapped first. B may be the\n"
     "word target: then A is mapped to the unit disk or sphere with its landmarks at given points of it.\n";
 
-static PetscErrorCode AskOptions(RegisterOptions *options)
+static PetscErrorCode ReadOptions(RegisterOptions *options)
 {
   PetscFunctionBegin;
   PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "Files", NULL);
@@ -27,7 +27,7 @@ static PetscErrorCode AskOptions(RegisterOptions *options)
                                sizeof(options->summary), &options->has_summary));
   PetscCall(PetscOptionsString("-history", "write a row per iteration of the last minimisation for A as CSV", NULL, "",
                                options->history, sizeof(options->history), &options->has_history));
-  PetscCall(EqmAskLayout(PetscOptionsObject));
+  PetscCall(EqmLayoutHelpOptions(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-dry_run", "look at options, meshes and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
   PetscOptionsEnd();
@@ -37,7 +37,7 @@ static PetscErrorCode AskOptions(RegisterOptions *options)
   PetscFunctionReturn(0);
 }
 
-/* Refuse before the long run what would be refused after it. */
+/* Check before the run what would fail after it. */
 static PetscErrorCode CheckArguments(const EqmCommandLine *line, const RegisterOptions *options)
 {
   PetscFunctionBegin;
@@ -61,7 +61,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, const RegisterO
   PetscFunctionReturn(0);
 }
 
-/* Of a run that was stopped there is the checkpoint, and no result. */
+/* A run that was stopped has a checkpoint, but no result. */
 static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration)
 {
   EqmStatus status;
@@ -83,7 +83,7 @@ static PetscErrorCode Write(const RegisterOptions *options, EqmLedger ledger, Eq
   PetscFunctionReturn(0);
 }
 
-/* A closing table for people. */
+/* Print the result table. */
 static PetscErrorCode View(const RegisterOptions *options, EqmRegistration registration)
 {
   const EqmMapCost *cost;
@@ -101,7 +101,7 @@ static PetscErrorCode View(const RegisterOptions *options, EqmRegistration regis
   PetscFunctionReturn(0);
 }
 
-/* Solve, write, tell. */
+/* Solve, write, print. */
 static PetscErrorCode Run(const RegisterOptions *options, EqmLedger ledger, EqmRegistration registration,
                           EqmStatus *status)
 {
@@ -123,8 +123,8 @@ PetscErrorCode EqmCommandRegister(const EqmCommandLine *line, EqmStatus *status)
 
   PetscFunctionBegin;
   if (line->help) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", manual));
-  PetscCall(AskOptions(&options));
-  PetscCall(EqmRegistrationHelp(PETSC_COMM_WORLD)); /* asks for every option, so that unknown ones stand out */
+  PetscCall(ReadOptions(&options));
+  PetscCall(EqmRegistrationHelp(PETSC_COMM_WORLD)); /* reads every option, to find the unknown ones */
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckArguments(line, &options));

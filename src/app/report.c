@@ -1,4 +1,4 @@
-/* equimap report RESULT... -o FILE: pictures and plots of results for people. */
+/* equimap report RESULT... -o FILE: pictures and plots of results. */
 #include "app.h"
 #include "picture/picture.h"
 #include <string.h>
@@ -7,7 +7,7 @@ static const char usage[] =
     "usage: equimap report RESULT.h5 [MORE.h5 ...] -o FILE.png|.pdf|.svg|.html [-view AZIMUTH,ELEVATION] [-up AXIS] "
     "[-width PIXELS]";
 
-static PetscErrorCode AskOptions(EqmReportOptions *options, char *output, size_t length)
+static PetscErrorCode ReadOptions(EqmReportOptions *options, char *output, size_t length)
 {
   PetscReal eye[2] = {0., 0.};
   PetscInt count = 2;
@@ -55,7 +55,7 @@ PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status)
   char output[PETSC_MAX_PATH_LEN] = "";
 
   PetscFunctionBegin;
-  PetscCall(AskOptions(&options, output, sizeof(output)));
+  PetscCall(ReadOptions(&options, output, sizeof(output)));
   if (line->help) PetscFunctionReturn(0);
   PetscCall(EqmRejectUnknownOptions(line));
   PetscCall(CheckOptions(line, &options, output));

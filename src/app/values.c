@@ -1,4 +1,4 @@
-/* The values of options, looked at before the work: what is wrong is said with the option's name. */
+/* The values of options, checked before the work: errors name the option. */
 #include "base/nearest.h"
 #include "base/quiet.h"
 #include "catalogue.h"
@@ -7,7 +7,7 @@
 
 enum { LONGEST = 4096 };
 
-/* Does PETSc understand it? Its own message, which does not know the option, is not shown. */
+/* Can PETSc parse the value? Its own message, which does not name the option, is not shown. */
 static PetscErrorCode IsUnderstood(const char *value, EqmOptionKind kind, PetscBool *fits)
 {
   char message[EQM_MESSAGE_MAX];
@@ -91,7 +91,7 @@ static PetscErrorCode CheckValue(const EqmOption *option, const char *value)
   PetscFunctionReturn(0);
 }
 
-/* What is to be written into a folder needs a name there. Rank 0 looks. */
+/* An output name must not be that of a folder. Rank 0 checks. */
 static PetscErrorCode CheckFolder(const EqmOption *option, const char *value)
 {
   static const char *const written[] = {"-o",       "-uv",        "-summary",
@@ -127,7 +127,7 @@ PetscErrorCode EqmCheckOptionValues(const EqmCommandLine *line)
     char value[LONGEST] = "";
     PetscBool given;
 
-    if (!strcmp(option->name, "-log_view") || !strcmp(option->name, "-help")) continue; /* PETSc's own affair */
+    if (!strcmp(option->name, "-log_view") || !strcmp(option->name, "-help")) continue; /* checked by PETSc */
     PetscCall(PetscOptionsGetString(NULL, NULL, option->name, value, sizeof(value), &given));
     if (!given) continue;
     PetscCall(CheckValue(option, value));

@@ -1,4 +1,4 @@
-/* Numbers handed to libraries whose integers may be narrower than PETSc's. */
+/* Checked conversion of numbers for libraries whose integers may be narrower than PETSc's. */
 #ifndef EQM_NARROW_H
 #define EQM_NARROW_H
 

@@ -1,4 +1,4 @@
-/* Random numbers that depend on what they belong to and not on who asks: the same on any number of ranks. */
+/* Random numbers that depend on the vertex or cell and not on the rank: the same on any number of ranks. */
 #ifndef EQM_RANDOM_H
 #define EQM_RANDOM_H
 

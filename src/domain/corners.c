@@ -66,7 +66,7 @@ static PetscErrorCode CornersAtQuarters(EqmMesh mesh, const PetscReal *arc, Pets
   PetscFunctionReturn(0);
 }
 
-/* Do three arc lengths lie on one side, corners included? */
+/* Are three arc lengths on one side, corners included? */
 static PetscBool ShareSide(const PetscReal corner_arc[4], const PetscReal arc[3])
 {
   unsigned common = 15;
@@ -79,7 +79,7 @@ static PetscBool ShareSide(const PetscReal corner_arc[4], const PetscReal arc[3]
   return (PetscBool)(common != 0);
 }
 
-/* Would a triangle be flat whatever the map, since its three vertices slide along one side? */
+/* Has a triangle its three vertices on one side, so that its image is flat for every map? */
 static PetscErrorCode HasFlatCell(EqmMesh mesh, const PetscReal *arc, const PetscReal corner_arc[4], PetscBool *has)
 {
   PetscInt local = 0, any;

@@ -1,5 +1,5 @@
-/* Domains: what is common to all. How each kind of vertex moves stands in a file per manifold, which kinds a domain has
-   in a file per domain. */
+/* Domains: the common part. There is a file per manifold, which has the motion of a kind of vertex, and a file per
+   domain, which has its kinds. */
 #include "domain/domain_private.h"
 #include "geometry/simplex.h"
 
@@ -198,7 +198,7 @@ PetscErrorCode EqmDomainCurvature(EqmDomain domain, const EqmPlace *place, const
 PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place, PetscBool *in_order)
 {
   const EqmMesh mesh = domain->mesh;
-  PetscReal local[2] = {0., 1.}; /* length gone round, all steps forward */
+  PetscReal local[2] = {0., 1.}; /* total length along the boundary, whether all steps are forward */
 
   PetscFunctionBegin;
   *in_order = PETSC_TRUE;

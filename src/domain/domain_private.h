@@ -8,11 +8,11 @@
 struct _p_EqmDomain {
   EqmMesh mesh;
   const char *name;
-  EqmMeasureKind measure; /* of image cells */
-  PetscBool
-      curved_image; /* image cells can fold without a change of sign of their measure: look at EQM_MEASURE_HALF_DET */
-  PetscBool spherical_coordinates;                /* vertices on the sphere move by their angles */
-  PetscInt dim;                                   /* coordinates of a place: 2 or 3 */
+  EqmMeasureKind measure;          /* of image cells */
+  PetscBool curved_image;          /* image cells can fold without a change of sign of their measure: folds are those of
+                                      EQM_MEASURE_HALF_DET */
+  PetscBool spherical_coordinates; /* vertices on the sphere move by their angles */
+  PetscInt dim;                    /* coordinates of a place: 2 or 3 */
   const EqmVertexMotion *motion[EQM_MAX_MOTIONS]; /* the kinds of vertices, NULL behind the last */
   unsigned char *kind;                            /* per local vertex: its place in `motion` */
   PetscInt *dof_start;          /* per local vertex: place of its first degree of freedom in the global vector */
@@ -41,7 +41,7 @@ PETSC_INTERN PetscErrorCode EqmDomainNumber(EqmDomain domain);
 PETSC_INTERN void EqmRetractNowhere(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal t,
                                     const PetscScalar *dofs, PetscReal *y, PetscReal *new_stored);
 
-/* held-disk, its angles from the file that the options name. Collective. */
+/* The domain held-disk, with angles from the file in the options. Collective. */
 PETSC_INTERN PetscErrorCode EqmDomainReadHeldDisk(EqmMesh mesh, const EqmDomainOptions *options, EqmDomain *domain);
 
 /* Boundary vertices to the angles 2 pi arc_length of the unit circle (disk.c). Collective. */

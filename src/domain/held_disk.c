@@ -3,7 +3,7 @@
 #include "domain/domain_private.h"
 #include "format/table.h"
 
-/* A boundary that turns back folds whatever is inside. */
+/* The angles must increase along the boundary: otherwise every map folds. */
 static PetscErrorCode CheckOrder(EqmDomain domain)
 {
   EqmPlace place;

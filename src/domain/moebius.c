@@ -3,7 +3,7 @@
 #include "domain/domain_private.h"
 #include "geometry/simplex.h"
 
-/* Beyond this radius one step of centring would throw nearly everything to one side. */
+/* Longest shift of one step of centring: longer ones move nearly all vertices to one side. */
 #define LONGEST_SHIFT .5
 
 PetscErrorCode EqmPlaceShift(EqmDomain domain, const PetscReal c[3], EqmPlace *place)
@@ -20,7 +20,7 @@ PetscErrorCode EqmPlaceShift(EqmDomain domain, const PetscReal c[3], EqmPlace *p
       x[k] = scale * y[k] + c[k];
       length += x[k] * x[k];
     }
-    length = PetscSqrtReal(length); /* one but for rounding, which must not add up */
+    length = PetscSqrtReal(length); /* one up to rounding, which must not accumulate */
     for (PetscInt k = 0; k < 3; k++) x[k] /= length;
   }
   PetscCall(EqmPlaceMakeFrames(domain, place));

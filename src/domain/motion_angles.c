@@ -19,7 +19,7 @@ static void ToAngles(const PetscReal x[3], PetscReal angle[2])
   angle[1] = PetscAtan2Real(x[1], x[0]);
 }
 
-/* No orthonormal frame, but what turns gradients into those by the angles (003 (7)). */
+/* Not orthonormal: the columns turn gradients into derivatives with respect to the angles (003 (7)). */
 static void Frame(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal *frame)
 {
   const PetscReal s = PetscSinReal(stored[0]), c = PetscCosReal(stored[0]);

@@ -10,7 +10,7 @@ static void Frame(PetscInt dim, const PetscReal *x, const PetscReal *stored, Pet
   frame[1] = x[0];
 }
 
-/* Turn a place by an angle. Rounding must not add up: the length is set to one. */
+/* Rotate a point by an angle. The length is set to one, so that rounding does not accumulate. */
 static void Retract(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal t, const PetscScalar *dofs,
                     PetscReal *y, PetscReal *new_stored)
 {

@@ -1,4 +1,4 @@
-/* Vertices that may go anywhere. */
+/* Vertices without a constraint. */
 #include "domain/domain_private.h"
 
 static void Frame(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal *frame)

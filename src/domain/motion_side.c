@@ -48,7 +48,7 @@ static PetscReal Advance(const PetscReal *p, const PetscReal *q)
   return p[1] - q[1];
 }
 
-/* Stay where you are: the retraction of kinds without degrees of freedom. */
+/* The retraction of kinds without degrees of freedom: the vertex is not moved. */
 void EqmRetractNowhere(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal t, const PetscScalar *dofs,
                        PetscReal *y, PetscReal *new_stored)
 {

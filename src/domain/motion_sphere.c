@@ -9,8 +9,8 @@ static void Frame(PetscInt dim, const PetscReal *x, const PetscReal *stored, Pet
   EqmCross(x, frame, frame + 3);
 }
 
-/* Follow the great circle of velocity (s1, s2) in the frame (b, x cross b), and carry b along: what of it points along
-   the motion turns with the motion, the rest stays (parallel transport). */
+/* Follow the great circle of velocity (s1, s2) in the frame (b, x cross b), with parallel transport of b: its
+   tangential component rotates with the motion, the rest is constant. */
 static void MoveOnSphere(const PetscReal *x, const PetscReal *b, PetscReal s1, PetscReal s2, PetscReal *y,
                          PetscReal *carried)
 {

@@ -3,7 +3,7 @@
 #include "geometry/simplex.h"
 #include "geometry/rotation.h"
 
-/* A point of the sphere as (u, v), of either formula the one that does not cancel. */
+/* Homogeneous coordinates (u, v) of a point of the sphere, by the one of two formulas that does not cancel. */
 static void ToProjective(const PetscReal x[3], double complex w[2])
 {
   const double complex z = x[0] + I * x[1];
@@ -63,14 +63,14 @@ EqmMoebius EqmMoebiusThrough(const PetscReal p[9], const PetscReal q[9])
   return EqmMoebiusProduct(&inverse, &there);
 }
 
-/* exp A for A = 1/2 (pull + i turn) . s with Pauli's matrices s, the second of them conjugate as our v is: A^2 is a
-   multiple of the identity. */
-EqmMoebius EqmMoebiusExponential(const PetscReal turn[3], const PetscReal pull[3])
+/* exp A for A = 1/2 (dilation + i rotation) . s with Pauli's matrices s, the second of them conjugate as our v is: A^2
+   is a multiple of the identity. */
+EqmMoebius EqmMoebiusExponential(const PetscReal rotation[3], const PetscReal dilation[3])
 {
   double complex a[3], square = 0., even = 1., odd = 1.;
 
   for (int k = 0; k < 3; k++) {
-    a[k] = .5 * (pull[k] + I * turn[k]);
+    a[k] = .5 * (dilation[k] + I * rotation[k]);
     square += a[k] * a[k];
   }
   if (Squared(square) > 0.) {

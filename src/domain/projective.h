@@ -14,8 +14,8 @@ typedef struct {
 PETSC_INTERN void EqmMoebiusApply(const EqmMoebius *map, const PetscReal x[3], PetscReal y[3]);
 /* The map that takes the three points p (3 each, different) to the three points q. Not collective. */
 PETSC_INTERN EqmMoebius EqmMoebiusThrough(const PetscReal p[9], const PetscReal q[9]);
-/* The map that the field turn x x + pull - (pull . x) x leads to in unit time. Not collective. */
-PETSC_INTERN EqmMoebius EqmMoebiusExponential(const PetscReal turn[3], const PetscReal pull[3]);
+/* The flow for unit time of the conformal field rotation x x + dilation - (dilation . x) x. Not collective. */
+PETSC_INTERN EqmMoebius EqmMoebiusExponential(const PetscReal rotation[3], const PetscReal dilation[3]);
 /* First b, then a. Not collective. */
 PETSC_INTERN EqmMoebius EqmMoebiusProduct(const EqmMoebius *a, const EqmMoebius *b);
 /* The map that brings points x to points q (3 each) as closely as it can: sum |M x - q|^2 least. With fewer than three

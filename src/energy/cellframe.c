@@ -2,7 +2,7 @@
 #include "domain/domain_private.h"
 #include "geometry/simplex.h"
 
-/* In the ball nearly every cell is one of these. */
+/* Are all corners free? In the ball this holds for nearly all cells. */
 static const EqmCellFrame plain = {
     .count = 12,
     .corner = {0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3},

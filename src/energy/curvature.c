@@ -17,7 +17,7 @@ static void FindDirections(PetscInt dim, const EqmCellFrame *frame, Displacement
   }
 }
 
-static PetscReal Bend(EqmDomain domain, const PetscReal *const p[], const Displacement *displacement)
+static PetscReal SecondDerivative(EqmDomain domain, const PetscReal *const p[], const Displacement *displacement)
 {
   const PetscReal *d[EQM_MAX_CORNERS];
 
@@ -25,7 +25,7 @@ static PetscReal Bend(EqmDomain domain, const PetscReal *const p[], const Displa
   return EqmMeasureSecondDerivative(domain->measure, p, d);
 }
 
-/* Straight motions first, mixed derivatives by polarisation; then what the geodesics' curvature adds. Not collective.
+/* Straight motions first, mixed derivatives by polarisation; then the geodesics' curvature term. Not collective.
  */
 void EqmCellDifferentiate(EqmDomain domain, const EqmPlace *place, PetscInt cell, EqmCellDerivatives *d)
 {
@@ -41,10 +41,10 @@ void EqmCellDifferentiate(EqmDomain domain, const EqmPlace *place, PetscInt cell
   for (PetscInt i = 0; i < d->frame.count; i++) {
     d->first[i] = 0.;
     for (PetscInt k = 0; k < dim * corners; k++) d->first[i] += gradient[k] * direction[i].x[k];
-    d->second[i][i] = Bend(domain, p, &direction[i]);
+    d->second[i][i] = SecondDerivative(domain, p, &direction[i]);
     for (PetscInt j = 0; j < i; j++) {
       for (PetscInt k = 0; k < dim * corners; k++) sum.x[k] = direction[i].x[k] + direction[j].x[k];
-      d->second[i][j] = d->second[j][i] = .5 * (Bend(domain, p, &sum) - d->second[i][i] - d->second[j][j]);
+      d->second[i][j] = d->second[j][i] = .5 * (SecondDerivative(domain, p, &sum) - d->second[i][i] - d->second[j][j]);
     }
   }
   for (PetscInt i = 0; i < d->frame.count;

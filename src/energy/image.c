@@ -4,8 +4,8 @@
 #include "geometry/simplex.h"
 #include "energy/loops.h"
 
-/* Run a loop compiled for its measure. To stand inside the parallel region: the compiler makes a function of its own of
-   the region before it inlines anything, and a constant outside is a variable in there. */
+/* Run a loop compiled for its measure. Use it inside the parallel region: the compiler outlines the region before it
+   inlines, so that a constant from outside is a variable there. */
 #define FOR_MEASURE(kind, loop, ...)                                                                                   \
   do {                                                                                                                 \
     if ((kind) == EQM_MEASURE_AREA2)                                                                                   \
@@ -18,7 +18,7 @@
       loop(EQM_MEASURE_HALF_DET, __VA_ARGS__);                                                                         \
   } while (0)
 
-/* Where the corners of a cell are, in an array with `dim` reals per vertex. */
+/* Pointers to the corners of a cell, in an array with `dim` reals per vertex. */
 static inline void Corners(PetscInt num_corners, PetscInt dim, const PetscInt *vertex, const PetscReal *x,
                            const PetscReal *p[EQM_MAX_CORNERS])
 {
@@ -184,7 +184,7 @@ PetscErrorCode EqmImageSum(EqmMesh mesh, const PetscReal *a, EqmImageTotals *tot
 }
 
 /* One block: the block's vertices gather from every cell that touches them; each is written by one thread, in one
- * order. */
+   order. */
 static inline __attribute__((always_inline)) void GradientBlock(EqmMeasureKind kind, EqmMesh mesh, const PetscReal *x,
                                                                 const PetscReal *slope, PetscInt b, PetscReal *gradient)
 {
@@ -263,7 +263,7 @@ static inline __attribute__((always_inline)) void DerivativesRange(EqmMeasureKin
   for (PetscInt c = EqmRangeStart(mesh->num_local_cells, b); c < last; c++) {
     const PetscInt *const v = mesh->cells + num_corners * c;
     const PetscReal *p[EQM_MAX_CORNERS], *d[EQM_MAX_CORNERS];
-    PetscReal g[12], rate = 0., bend;
+    PetscReal g[12], rate = 0., second_derivative;
     Corners(num_corners, dim, v, x, p);
     Corners(num_corners, dim, v, velocity, d);
     EqmMeasureGradient(kind, p, g);
@@ -272,11 +272,11 @@ static inline __attribute__((always_inline)) void DerivativesRange(EqmMeasureKin
     }
     if (first) first[c] = rate;
     if (!second) continue;
-    bend = EqmMeasureSecondDerivative(kind, p, d);
+    second_derivative = EqmMeasureSecondDerivative(kind, p, d);
     for (PetscInt a = 0; a < num_corners && acceleration; a++) {
-      for (PetscInt k = 0; k < dim; k++) bend += g[dim * a + k] * acceleration[dim * v[a] + k];
+      for (PetscInt k = 0; k < dim; k++) second_derivative += g[dim * a + k] * acceleration[dim * v[a] + k];
     }
-    second[c] = bend;
+    second[c] = second_derivative;
   }
 }
 

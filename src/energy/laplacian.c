@@ -27,7 +27,7 @@ static inline __attribute__((always_inline)) void DotWeights(PetscInt dim, const
 
 /* The same for tetrahedra: scale times minus the dot products of the volume's gradients at the ends of each edge over
    `measure`. With G = dV/dx, L = sum of G G^T over |V| is the Dirichlet energy's, and 2/3 sum of G G^T over |t| is L_V:
-   003 (3c) with the edge length that it lacks, and no cotangent to break down where an image is flat. */
+   003 (3c) with the missing edge length, and without cotangents, which are singular where an image is flat. */
 static void VolumeWeights(EqmMesh mesh, PetscReal scale, const PetscReal *x, const PetscReal *measure, PetscInt first,
                           PetscInt last, PetscReal *weights)
 {

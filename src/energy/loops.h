@@ -1,4 +1,5 @@
-/* Fixed cuts of the cell loops: partial sums by range, added in the order of the ranges, whatever the threads do. */
+/* Fixed ranges of the cell loops: partial sums by range are added in the order of the ranges, for any number of
+   threads. */
 #ifndef EQM_LOOPS_H
 #define EQM_LOOPS_H
 

@@ -1,4 +1,4 @@
-/* One answer of all ranks to whether an HDF5 call worked, and why it did not. */
+/* The same outcome of an HDF5 call on all ranks, and the reason of a failure. */
 #include "h5/h5.h"
 #include <stdio.h>
 

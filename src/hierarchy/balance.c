@@ -243,7 +243,7 @@ static PetscErrorCode Search(Newton *newton, EqmLevelValue *value, PetscReal *t)
   for (PetscInt n = 0; n < MOST_TRIALS; n++, s *= .5) {
     EqmLevelValue trial;
     PetscCall(Move(newton, s, newton->trial[0]));
-    trial = EqmLevelMapLook(map, newton->trial[0]);
+    trial = EqmLevelMapEvaluate(map, newton->trial[0]);
     if (trial.objective < best.objective) {
       PetscReal *const swap = newton->trial[0];
       newton->trial[0] = newton->trial[1];
@@ -255,7 +255,7 @@ static PetscErrorCode Search(Newton *newton, EqmLevelValue *value, PetscReal *t)
     }
   }
   if (*t > 0.) PetscCall(PetscArraycpy(map->x, newton->trial[1], length));
-  *value = EqmLevelMapLook(map, map->x);
+  *value = EqmLevelMapEvaluate(map, map->x);
   PetscFunctionReturn(0);
 }
 
@@ -274,7 +274,7 @@ PetscErrorCode EqmBalanceLevel(EqmLevelMap *map, PetscInt coarser, const EqmBala
   const PetscInt n = map->level->num_vertices, length = map->dim * n;
   const PetscReal hopeless = 1e8;
   Newton newton = {.map = map, .coarser = coarser, .damping = options->damping, .tolerance = options->tolerance};
-  EqmLevelValue value = EqmLevelMapLook(map, map->x);
+  EqmLevelValue value = EqmLevelMapEvaluate(map, map->x);
   unsigned char *count;
 
   PetscFunctionBegin;

@@ -25,7 +25,7 @@ static PetscErrorCode PlaceTetrahedron(EqmLevelMap *map)
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < 12; k++) map->x[k] = corner[k / 3][k % 3] / PetscSqrtReal(3.);
-  if (EqmLevelMapLook(map, map->x).folds > 0) {
+  if (EqmLevelMapEvaluate(map, map->x).folds > 0) {
     for (PetscInt v = 0; v < 4; v++) map->x[3 * v] *= -1.;
   }
   PetscFunctionReturn(0);
@@ -57,7 +57,7 @@ static PetscErrorCode MapCoarsest(EqmLevelMap *map, PetscInt last, const EqmCasc
     while (k > 0 && map[k - 1].level->num_vertices <= options->coarsest) k--;
     for (; k <= last; k++) {
       PetscCall(EqmTutteLevel(&map[k]));
-      if (EqmLevelMapLook(&map[k], map[k].x).folds == 0 || k == last) break;
+      if (EqmLevelMapEvaluate(&map[k], map[k].x).folds == 0 || k == last) break;
     }
   }
   PetscCall(BalanceCoarsest(&map[k], options));
@@ -71,7 +71,7 @@ static PetscErrorCode Show(const EqmCascadeOptions *options, EqmLevelMap *map, c
 
   PetscFunctionBegin;
   if (!options->trace) PetscFunctionReturn(0);
-  value = EqmLevelMapLook(map, map->x);
+  value = EqmLevelMapEvaluate(map, map->x);
   PetscCall(PetscPrintf(PETSC_COMM_SELF,
                         "  %8" PetscInt_FMT " vertices, %-12s %5" PetscInt_FMT
                         ": energy %.3e, objective %.3e, folds %" PetscInt_FMT ", worst quality %.2g\n",
@@ -103,7 +103,7 @@ static PetscErrorCode RelaxLevel(EqmLevelMap *map, PetscInt left, const EqmCasca
   PetscFunctionBegin;
   PetscCall(EqmLevelStarsCreate(map->level, &stars));
   for (PetscInt s = 0; s < options->sweeps; s += 2) {
-    EqmLevelMapLook(map, map->x);
+    EqmLevelMapEvaluate(map, map->x);
     PetscCall(EqmRelaxLevel(map, &stars, PetscMin(2, options->sweeps - s)));
   }
   PetscCall(Show(options, map, "sweeps", options->sweeps));
@@ -142,7 +142,7 @@ static PetscErrorCode CascadeLevels(EqmHierarchy hierarchy, EqmCascadeTarget tar
     PetscCall(Show(options, &map[k], "reinserted", hard));
     PetscCall(RelaxLevel(&map[k], last - k, options));
   }
-  value = EqmLevelMapLook(&map[0], map[0].x);
+  value = EqmLevelMapEvaluate(&map[0], map[0].x);
   *result = (EqmCascadeResult){.folds = value.folds, .energy = value.energy};
   PetscCall(PetscArraycpy(x, map[0].x, map[0].dim * hierarchy->level[0].num_vertices));
   for (PetscInt k = 0; k <= last; k++) PetscCall(EqmLevelMapDestroy(&map[k]));

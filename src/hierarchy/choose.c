@@ -84,8 +84,8 @@ static PetscBool KeepsSurface(EqmDecimation *d, const EqmStar *star, PetscInt ta
   return PETSC_TRUE;
 }
 
-/* The worst quality among the triangles that arise, lower where they turn away from the star's normal; not looked for
-   further once it is no better than `enough`. */
+/* The worst quality among the triangles that arise, lower where they turn away from the star's normal; the search ends
+ * once it is no better than `enough`. */
 static PetscReal QualityAfter(const EqmDecimation *d, const EqmStar *star, PetscInt target, const PetscReal normal[3],
                               PetscReal enough)
 {

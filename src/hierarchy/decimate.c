@@ -29,7 +29,7 @@ static PetscErrorCode Begin(EqmHierarchyLevel *level, EqmDecimation *d)
   PetscFunctionReturn(0);
 }
 
-/* Records take what they need and no more. */
+/* Shrink the arrays of records to their size. */
 static PetscErrorCode End(EqmDecimation *d)
 {
   EqmHierarchyLevel *const level = d->level;
@@ -65,8 +65,9 @@ static PetscErrorCode Record(EqmDecimation *d, const EqmStar *star, PetscInt ont
   PetscFunctionReturn(0);
 }
 
-/* The star's weight, whole, goes to the triangles that take its place, by their areas, none without a share. */
-static void HandOnWeight(EqmDecimation *d, const EqmStar *star, PetscInt onto)
+/* The whole weight of the star is distributed to the triangles that replace it, by their areas, a positive part to
+ * each. */
+static void DistributeWeight(EqmDecimation *d, const EqmStar *star, PetscInt onto)
 {
   const PetscReal *const x = d->level->position;
   PetscReal area[EQM_MOST_SPOKES], areas = 0., weight = 0.;
@@ -100,7 +101,7 @@ static PetscErrorCode Collapse(EqmDecimation *d, const EqmStar *star, PetscInt t
     if (star->ring[k] == u || star->ring[(k + 1) % star->size] == u) d->dead[star->cell[k]] = 1;
     for (PetscInt a = 0; a < 3 && !d->dead[star->cell[k]]; a++) corner[a] = corner[a] == v ? u : corner[a];
   }
-  HandOnWeight(d, star, u);
+  DistributeWeight(d, star, u);
   while (d->next[last] >= 0) last = d->next[last];
   d->next[last] = d->next[u];
   d->next[u] = v;

@@ -1,5 +1,5 @@
 /* The mesh on the first rank, numbered along Morton's curve (Morton 1966): neighbours in space are neighbours in
-   memory, and the numbers do not depend on how the mesh was dealt to the ranks. */
+   memory, and the numbers do not depend on the distribution of the mesh. */
 #include "hierarchy/gather.h"
 #include "mesh/mesh_private.h"
 #include "base/rows.h"
@@ -93,8 +93,8 @@ static PetscErrorCode GatherVertices(EqmMesh mesh, const PetscBool *corner, EqmH
   PetscFunctionReturn(0);
 }
 
-/* Cells in the order of their first vertices; weights are not less than what arithmetic can keep apart from nothing.
-   Collective. */
+/* Cells in the order of their first vertices; weights are bounded below, so that they are not lost to rounding.
+ * Collective. */
 static PetscErrorCode GatherCells(EqmMesh mesh, const PetscInt *number, EqmHierarchyLevel *level)
 {
   const PetscInt m = mesh->rank == 0 ? mesh->num_cells : 0, owned = mesh->num_owned_cells;

@@ -82,7 +82,7 @@ static PetscReal CellDirichlet(const EqmLevelMap *map, const PetscReal *x, Petsc
   return sum;
 }
 
-EqmLevelValue EqmLevelMapLook(EqmLevelMap *map, const PetscReal *x)
+EqmLevelValue EqmLevelMapEvaluate(EqmLevelMap *map, const PetscReal *x)
 {
   const EqmHierarchyLevel *const level = map->level;
   const PetscInt dim = map->dim;

@@ -26,7 +26,7 @@ typedef struct {
   unsigned char *motion; /* an EqmMotion per vertex */
   PetscReal *x;          /* dim per vertex */
   PetscReal epsilon;     /* weight of the angle energy */
-  PetscReal total;       /* A, of the map when it was last looked at */
+  PetscReal total;       /* A of the map at its last evaluation */
 } EqmLevelMap;
 
 typedef struct {
@@ -42,13 +42,13 @@ PETSC_INTERN PetscErrorCode EqmLevelMapDestroy(EqmLevelMap *map);
 PETSC_INTERN PetscErrorCode EqmLevelMapSetMotions(EqmLevelMap *map, EqmCascadeTarget target);
 /* Motions and places of the vertices that the next coarser level has. Not collective. */
 PETSC_INTERN PetscErrorCode EqmLevelMapRestrict(const EqmLevelMap *finer, EqmLevelMap *coarser);
-/* The places x, instead of the map's own, looked at; `map->total` is theirs afterwards. Not collective. */
-PETSC_INTERN EqmLevelValue EqmLevelMapLook(EqmLevelMap *map, const PetscReal *x);
-/* Half cotangents of a cell's angles on the surface, slivers fattened so far that its Laplacian stays bounded: positive
+/* Evaluate the objective at x instead of the map's own coordinates; sets `map->total`. Not collective. */
+PETSC_INTERN EqmLevelValue EqmLevelMapEvaluate(EqmLevelMap *map, const PetscReal *x);
+/* Half cotangents of a cell's angles on the surface, with slivers changed so that its Laplacian is bounded: positive
    semidefinite for any triangle. Not collective. */
 PETSC_INTERN void EqmHalfCotangents(const EqmHierarchyLevel *level, PetscInt cell, PetscReal half[3]);
 
-/* What the angle energy is multiplied with. */
+/* Factor of the angle energy. */
 static inline PetscReal EqmAngleFactor(const EqmLevelMap *map)
 {
   return map->epsilon / (map->dim == 2 ? map->total : 4. * PETSC_PI);
@@ -67,7 +67,7 @@ static inline PetscReal EqmLevelArea(PetscInt dim, const PetscReal *p, const Pet
   return dim == 2 ? EqmArea2(p, q, r) : EqmArea3(p, q, r);
 }
 
-/* What is wrong with an image triangle: rho, and its derivative by the measure that it is taken of. */
+/* Residual of an image triangle: rho, and its derivative by the measure that it depends on. */
 typedef struct {
   PetscReal rho, slope;
   PetscBool of_area; /* else of the orientation */
@@ -132,7 +132,7 @@ static inline PetscInt EqmMotionFrame(EqmMotion motion, const PetscReal *x, Pets
   return motion == EQM_MOVE_PLANE ? 2 : 1;
 }
 
-/* Bring a place back to the circle or the sphere. */
+/* Project a point back to the circle or the sphere. */
 static inline void EqmRetract(EqmMotion motion, PetscReal *x)
 {
   const PetscInt dim = motion == EQM_MOVE_SPHERE ? 3 : 2;

@@ -120,7 +120,7 @@ static PetscBool PlaceInside(const EqmHierarchyLevel *level, const EqmCollapse *
   return CloseIn(star, motion, onto, x);
 }
 
-/* One vertex back; false where no place could be told from a fold. */
+/* One vertex back; false where every place is a fold up to rounding. */
 static PetscBool PutBack(const EqmHierarchyLevel *level, const EqmCollapse *record, EqmLevelMap *map, PetscInt *hard)
 {
   enum { STEPS = 3 };

@@ -1,10 +1,10 @@
-/* The mesh of a run that goes on: the one that is named, or the copy that lies beside the checkpoint. */
+/* The mesh of a run that is continued: the named one, or the copy beside the checkpoint. */
 #include "intake/intake.h"
 #include "mesh/mesh_private.h"
 #include "base/lookup.h"
 #include "store/keptmesh.h"
 
-/* EqmIntakeChoose - say in `options` which mesh to read: the one that is named, or, on a restart for which it is gone
+/* EqmIntakeChoose - set in `options` which mesh to read: the one that is named, or, on a restart for which it is gone
    or not named, the copy beside the checkpoint; likewise the density.
 
    Collective. named - the command line's, or NULL; restart - the checkpoint, or NULL; options - its

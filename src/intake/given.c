@@ -1,4 +1,4 @@
-/* What a map of a prepared mesh does to the cells of the file: these the user gets, so these are measured. */
+/* The map of a prepared mesh on the cells of the file, which are the ones that the result is for: their distortion. */
 #include "intake/intake.h"
 #include "mesh/mesh_private.h"
 #include "base/rows.h"
@@ -37,7 +37,7 @@ static PetscBool IsCut(PetscInt num_given, const PetscInt *corner, const PetscRe
   return PETSC_FALSE;
 }
 
-/* What has become of the cells that parts come from, a value per part. Parts of a triangle lie in its plane, so normals
+/* The fate of the cells that parts come from, a value per part. Parts of a triangle lie in its plane, so normals
    tell whether they were turned over. Tetrahedra are turned when the mesh is made, and never cut apart. */
 static PetscErrorCode CompareParts(const EqmIntake *intake, PetscInt num, const PetscInt *child, const PetscInt *parent,
                                    PetscInt *value)
@@ -69,7 +69,7 @@ static PetscErrorCode CompareParts(const EqmIntake *intake, PetscInt num, const 
   PetscFunctionReturn(0);
 }
 
-/* EqmIntakeMarkCells - what has become of the file's cells: an EqmCellFate per cell of the slab. Collective. */
+/* EqmIntakeMarkCells - the fate of the file's cells: an EqmCellFate per cell of the slab. Collective. */
 PetscErrorCode EqmIntakeMarkCells(const EqmIntake *intake, PetscInt *mark)
 {
   const PetscInt count = intake->given->cell_end - intake->given->cell_start;
@@ -125,8 +125,8 @@ static PetscErrorCode CollectMapped(EqmSoup given, const PetscInt *mark, MappedC
   PetscFunctionReturn(0);
 }
 
-/* Distortion and ratios of a map of the mapped cells alone become those of the map of the file's mesh. */
-static PetscErrorCode TakeMeasures(EqmMap measured, const MappedCells *cells, EqmMap map)
+/* Set distortion and ratios of the file's map to those of the mapped cells alone. */
+static PetscErrorCode CopyDistortion(EqmMap measured, const MappedCells *cells, EqmMap map)
 {
   const PetscInt num = cells->soup->cell_end - cells->soup->cell_start;
   const PetscInt num_vertices = map->soup->vertex_end - map->soup->vertex_start;
@@ -142,7 +142,7 @@ static PetscErrorCode TakeMeasures(EqmMap measured, const MappedCells *cells, Eq
   PetscFunctionReturn(0);
 }
 
-/* What the prepared mesh's own map is like goes beside; folds of the file's own cells decide how the run has ended. */
+/* Add the figures of the prepared mesh's map; folds of the file's cells decide the status. */
 static PetscErrorCode Judge(EqmMap found, const char *target, PetscInt64 num_cut, EqmMap map)
 {
   const PetscBool keeps_angles = (PetscBool)!strcmp(target, "conformal");
@@ -192,7 +192,7 @@ PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, 
   PetscCall(PetscMalloc1(map->dim * mesh->num_local, &x));
   PetscCall(EqmMeshVerticesFromInput(mesh, cells.soup, map->dim, map->coordinates, x));
   PetscCall(EqmMapMeasure(measured, mesh, x));
-  PetscCall(TakeMeasures(measured, &cells, map));
+  PetscCall(CopyDistortion(measured, &cells, map));
   for (PetscInt c = 0; c < given->cell_end - given->cell_start; c++) num_cut += mark[c] == EQM_CELL_CUT;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &num_cut, 1, MPIU_INT64, MPI_SUM, given->comm));
   PetscCall(Judge(found, intake->target, num_cut, map));

@@ -1,4 +1,4 @@
-/* The mesh that a run is given: read, prepared and repaired if asked, refused if it cannot be mapped. */
+/* The mesh that a run is given: read, prepared and repaired if set, refused if it cannot be mapped. */
 #include "intake/intake.h"
 #include "mesh/mesh_private.h"
 #include "mesh/handles.h"
@@ -7,7 +7,7 @@
 #include "store/map_private.h"
 #include <string.h>
 
-/* What stands before a report: of which mesh it is, if there are two. */
+/* Prefix of a report: the name of the mesh, if there are two. */
 #define OF_PART(part) (part) ? (part) : "", (part) ? ": " : ""
 
 /* Print the lines of a text that begin with `head`. Collective. */
@@ -24,7 +24,7 @@ static PetscErrorCode PrintLinesWith(MPI_Comm comm, const char *part, const char
   PetscFunctionReturn(0);
 }
 
-/* What a repair did, in one line; `part` as in EqmIntakeOptions. Collective. */
+/* The changes of a repair, in one line; `part` as in EqmIntakeOptions. Collective. */
 PetscErrorCode EqmPrintRepair(MPI_Comm comm, const char *part, const EqmRepair *repair)
 {
   PetscFunctionBegin;
@@ -50,7 +50,7 @@ PetscErrorCode EqmPrintPreparation(MPI_Comm comm, const char *part, const EqmPre
   PetscFunctionReturn(0);
 }
 
-/* Prepare a copy of the input; where there was nothing to do, the input is what is mapped. */
+/* Prepare a copy of the input; if nothing changes, the input itself is mapped. */
 static PetscErrorCode Prepare(const EqmPrepareOptions *options, EqmIntake *intake)
 {
   PetscFunctionBegin;
@@ -75,7 +75,7 @@ static PetscErrorCode Unprepare(EqmIntake *intake)
   PetscFunctionReturn(0);
 }
 
-/* Look at what would be mapped: its topology, the target that was asked for or that it asks for, what is wrong. */
+/* Diagnose the mesh: topology, target (the named one or that of the topology), defects. */
 static PetscErrorCode Diagnose(const char *wanted, PetscBool with_places, EqmIntake *intake, PetscBool *fatal,
                                char *text, size_t length)
 {
@@ -119,7 +119,7 @@ static PetscErrorCode FindCure(EqmIntake *intake, const char *wanted, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* The mesh is out of the question: say why, and whether something helps, or did not help. */
+/* Refuse the mesh: the reason, and whether an option would help or did not help. */
 static PetscErrorCode Refuse(EqmIntake *intake, const EqmIntakeOptions *options, const char *findings)
 {
   const char *const mesh = intake->given->file, *const target = intake->target;
@@ -168,8 +168,8 @@ static PetscErrorCode Keep(EqmSoup soup, const EqmIntakeOptions *options, EqmLed
   PetscFunctionReturn(0);
 }
 
-/* EqmIntakeRead - read a mesh that is to be mapped, add noise and mend it if asked, refuse it if it cannot be mapped,
-   leave a copy of it beside the checkpoint.
+/* EqmIntakeRead - read a mesh that is to be mapped, add noise and repair it if set, refuse it if it cannot be mapped,
+   write a copy of it beside the checkpoint.
 
    Collective. options - as EqmIntakeChoose leaves them; intake - to be freed with EqmIntakeDestroy.
    Errors: those of EqmSoupRead, EqmSoupReadDensity and EqmSoupAddNoise; EQM_ERR_MESH with what is wrong, where, and
@@ -228,10 +228,10 @@ static PetscErrorCode MarkLeftOut(const EqmIntake *intake, EqmMap map)
   PetscFunctionReturn(0);
 }
 
-/* EqmIntakeTakeMap - the map of the mesh that was mapped becomes one of the mesh that was given; the two are the same
-   where nothing was mended.
+/* EqmIntakeTakeMap - turn the map of the mapped mesh into one of the given mesh; the two are the same where nothing was
+   changed.
 
-   Collective. mesh - made of intake->mapped; found - its map in that numbering; map - the answer, to be destroyed
+   Collective. mesh - made of intake->mapped; found - its map in that numbering; map - the result, to be destroyed
    before `found`. */
 PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap found, EqmMap *map)
 {

@@ -115,8 +115,8 @@ struct _p_EqmLinear {
   PetscErrorCode (*destroy)(EqmLinear);
 };
 
-/* Ask for the options of linear solvers, with help: -linear_solver, -memory_limit. */
-PETSC_INTERN PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject);
+/* List the options of linear solvers, with help: -linear_solver, -memory_limit. */
+PETSC_INTERN PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject);
 /* Hand what was asked for on to a run inside this one, which has options of its own. */
 PETSC_INTERN PetscErrorCode EqmLinearPassOptions(PetscOptions options);
 /* Until EqmOptionsPopDefaults, options that are not given have the values of `defaults` (pairs of name and value). The

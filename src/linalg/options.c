@@ -4,7 +4,7 @@
 const char *const EqmSolverKinds[] = {"auto",      "cholmod", "multifrontal",  "substructure", "mumps",
                                       "multigrid", "petsc",   "EqmSolverKind", "EQM_SOLVER_",  NULL};
 
-PetscErrorCode EqmLinearAskOptions(PetscOptionItems *PetscOptionsObject)
+PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject)
 {
   PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
   PetscReal limit = 0.;

@@ -1,4 +1,4 @@
-/* What the threads share out: blocks of vertices with the cells they look at, and the measures of the cells. */
+/* Blocks of vertices for threads, with the cells around them, and the measures of the cells. */
 #include "mesh/build.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"

@@ -1,4 +1,4 @@
-/* The steps from a soup to a distributed mesh; private to this room. */
+/* The steps from a soup to a distributed mesh; private to this folder. */
 #ifndef EQM_MESH_BUILD_H
 #define EQM_MESH_BUILD_H
 

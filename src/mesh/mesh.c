@@ -49,7 +49,8 @@ static PetscErrorCode LocalCells(const EqmStars *stars, PetscInt num_owned, cons
   PetscFunctionReturn(0);
 }
 
-/* Global numbers of the ghosts: owners tell the slabs of the input numbering, the ghosts ask there. */
+/* Global numbers of the ghosts: owners send them to the slabs of the input numbering, from which the ghosts fetch them.
+ */
 static PetscErrorCode NumberGhosts(EqmMesh mesh, EqmSoup soup, PetscInt num_ghosts, const PetscInt *ghost_input,
                                    PetscInt *ghost_global)
 {
@@ -161,7 +162,7 @@ static PetscErrorCode SortCells(EqmMesh mesh, const EqmStars *stars, const Petsc
   PetscFunctionReturn(0);
 }
 
-/* `width` reals of every cell that arrived, asked from the slabs; NULL where the soup has none. */
+/* `width` reals of every received cell, fetched from the slabs; NULL where the soup has none. */
 static PetscErrorCode CellReals(EqmSoup soup, const EqmStars *stars, const PetscInt *order, PetscInt width,
                                 const PetscReal *slab, PetscReal **reals)
 {

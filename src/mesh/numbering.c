@@ -1,5 +1,6 @@
 /* Between the mesh's numbering and the input's. */
 #include "mesh/build.h"
+#include "mesh/gather.h"
 #include "mesh/mesh_private.h"
 #include "base/rows.h"
 
@@ -53,6 +54,33 @@ PetscErrorCode EqmMeshFindVertices(EqmMesh mesh, PetscInt num, const PetscInt *i
     local[i] = at < 0 ? -1 : vertex[at];
   }
   PetscCall(PetscFree2(sorted, vertex));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMeshGatherVertices(EqmMesh mesh, PetscInt num, const PetscInt *vertices, PetscInt width,
+                                     const PetscReal *values, PetscReal *gathered, PetscInt *missing)
+{
+  const PetscInt stride = width + 1; /* the last entry counts the owners: 1, or 0 for a vertex of no cell */
+  PetscReal *entries;
+  PetscInt *local;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(stride * num, &entries));
+  PetscCall(PetscMalloc1(num, &local));
+  PetscCall(EqmMeshFindVertices(mesh, num, vertices, local));
+  for (PetscInt i = 0; i < num; i++) {
+    if (local[i] < 0) continue;
+    PetscCall(PetscArraycpy(entries + stride * i, values + width * local[i], width));
+    entries[stride * i + width] = 1.;
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, entries, (PetscMPIInt)(stride * num), MPIU_REAL, MPIU_SUM, mesh->comm));
+  if (missing) *missing = -1;
+  for (PetscInt i = num - 1; i >= 0; i--) {
+    PetscCall(PetscArraycpy(gathered + width * i, entries + stride * i, width));
+    if (missing && entries[stride * i + width] == 0.) *missing = i;
+  }
+  PetscCall(PetscFree(local));
+  PetscCall(PetscFree(entries));
   PetscFunctionReturn(0);
 }
 

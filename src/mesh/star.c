@@ -4,7 +4,7 @@
 #include "base/exchange.h"
 #include "base/rows.h"
 
-/* Tell whether a cell of the soup (its `cell_size` input vertex numbers) can be looked at. Not collective. */
+/* Is a cell of the soup (its `cell_size` input vertex numbers) valid? Not collective. */
 EqmCellUse EqmSoupCellUse(EqmSoup soup, const PetscInt *cell)
 {
   EqmCellUse use = EQM_CELL_USABLE;
@@ -27,14 +27,14 @@ PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *
   PetscFunctionReturn(0);
 }
 
-/* Owners of the vertices of this slab's cells, asked from the slabs that hold the vertices. Collective. */
+/* Owners of the vertices of this slab's cells, fetched from the slabs that hold the vertices. Collective. */
 static PetscErrorCode OwnersOfCellVertices(EqmSoup soup, const PetscInt *owner_of_slab, PetscInt *owner)
 {
   const PetscInt num_entries = soup->cell_size * (soup->cell_end - soup->cell_start);
   PetscInt *vertex;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(num_entries, &vertex)); /* a number that does not exist has no owner: ask for any instead */
+  PetscCall(PetscMalloc1(num_entries, &vertex)); /* a number that does not exist has no owner: fetch any instead */
   for (PetscInt k = 0; k < num_entries; k++) {
     vertex[k] = soup->cells[k] >= 0 && soup->cells[k] < soup->num_vertices ? soup->cells[k] : 0;
   }

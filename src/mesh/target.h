@@ -16,7 +16,7 @@ typedef struct {
 PETSC_INTERN void EqmTargetsGet(const EqmTarget **targets, PetscInt *num_targets);
 /* The target of a name; NULL where there is none. Not collective. */
 PETSC_INTERN const EqmTarget *EqmTargetFind(const char *name);
-/* The target that a topology asks for where none is named: the first that takes it; NULL where none does. Not
+/* The default target of a topology: the first that takes it; NULL where none does. Not
    collective. */
 PETSC_INTERN const EqmTarget *EqmTargetOfTopology(EqmTopology topology);
 

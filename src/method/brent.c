@@ -13,7 +13,7 @@ typedef struct {
 typedef struct {
   PetscReal low, high;         /* the minimum is between */
   Sample best, second, third;  /* of all samples, but for those that were third before */
-  PetscReal step, step_before; /* the last two, as they were meant */
+  PetscReal step, step_before; /* the last two, before they were kept inside the bracket */
 } Bracket;
 
 /* Where the parabola through the three samples has its extremum, as p / q from the best of them; q is not negative. */

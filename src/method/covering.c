@@ -99,7 +99,7 @@ static PetscErrorCode ProjectToDisk(EqmMethod method, EqmIterate iterate, const 
   PetscFunctionReturn(0);
 }
 
-/* The disk's map from the sphere's, and what is known of that. */
+/* The map to the disk from the map to the sphere, with totals, gradient norm and step length. */
 static PetscErrorCode TakeFromSphere(EqmMethod method, EqmIterate iterate)
 {
   const Covering *const data = method->data;
@@ -209,7 +209,7 @@ static PetscErrorCode Destroy(EqmMethod method)
   PetscFunctionReturn(0);
 }
 
-/* All of it is the sphere's, on the covering's mesh. */
+/* The whole state belongs to the covering's iterate. */
 static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
   const Covering *const data = method->data;

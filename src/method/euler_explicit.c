@@ -25,7 +25,7 @@ static PetscErrorCode ApplyJacobian(EqmMethod method, EqmIterate iterate, Vec u,
   PetscFunctionReturn(0);
 }
 
-/* Two over the largest eigenvalue of the Jacobian, by power iteration from a field of no particular shape. */
+/* Two over the largest eigenvalue of the Jacobian, by power iteration from a pseudo-random field. */
 static PetscErrorCode FindLimit(EqmMethod method, EqmIterate iterate, PetscReal *limit)
 {
   enum { MOST_ITERATIONS = 300 };
@@ -111,7 +111,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   PetscCall(EqmFlowAccept(method->problem, iterate, &e->trial, e->dt));
   PetscCall(EqmFlowJudge(method, iterate->totals.energy - before, &e->ended));
   *outcome = EQM_STEP_TAKEN;
-  if (iterate->totals.energy < before + rise) PetscFunctionReturn(0); /* centring may cost a little */
+  if (iterate->totals.energy < before + rise) PetscFunctionReturn(0); /* centring may raise the energy slightly */
   *outcome = EQM_STEP_STALLED;
   PetscCall(PetscSNPrintf(method->message, sizeof(method->message),
                           "the energy rises: the time step %.4g is too long (stability ends near %.4g)", (double)e->dt,

@@ -73,7 +73,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   s->unknowns = (EqmUnknowns){3 * mesh->num_owned, 3 * mesh->vertex_start, s->start, count};
   PetscCall(EqmGeneralCreate(mesh, &s->unknowns, PETSC_FALSE, PETSC_TRUE, &s->matrix));
   PetscCall(EqmPlaceCreate(method->problem->domain, &s->trial));
-  PetscCall(PetscMalloc1(6 * mesh->num_owned, &s->residual)); /* and room for it in columns */
+  PetscCall(PetscMalloc1(6 * mesh->num_owned, &s->residual)); /* and the same in columns */
   s->dt = s->flow.step > 0. ? s->flow.step : 5.;
   s->step = (EqmImplicitStep){.problem = method->problem, .place = &s->trial};
   PetscCall(EqmProblemGetAngleWeights(method->problem, &s->step.weights));

@@ -1,5 +1,5 @@
 /* The fixed-point iteration of stretch energy minimisation: disk with a moving boundary (000 (14)), square (002
- * Algorithm 1). */
+   Algorithm 1). */
 #include "method/method.h"
 #include "domain/domain_private.h"
 
@@ -35,7 +35,7 @@ static PetscErrorCode Reset(EqmMethod method)
 }
 
 /* New columns for one group of vertices: -L_gg^-1 L_gh z_h, where `z` (per local vertex, two coordinates) is zero on
- * the group. */
+   the group. */
 static PetscErrorCode SolveGroup(EqmMethod method, EqmIterate iterate, signed char group, const PetscReal *z)
 {
   FixedPoint *const fp = method->data;
@@ -126,7 +126,7 @@ static PetscErrorCode Pass(EqmMethod method, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
-/* On the sphere the iteration has no limit to go to: it ends where the energy first rises (001 Algorithm 2). */
+/* On the sphere the iteration does not converge: it ends where the energy first rises (001 Algorithm 2). */
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
   FixedPoint *const fp = method->data;

@@ -102,6 +102,6 @@ PetscErrorCode EqmFlowState(EqmMethod method, EqmState state, PetscReal *time_st
   PetscFunctionBegin;
   PetscCall(EqmStateReal(state, "time_step", time_step));
   PetscCall(EqmStateBool(state, "ended", ended));
-  if (EqmStateIsLoading(state) && *ended) PetscCall(EqmFlowJudge(method, 0., ended)); /* says so again */
+  if (EqmStateIsLoading(state) && *ended) PetscCall(EqmFlowJudge(method, 0., ended)); /* sets the message again */
   PetscFunctionReturn(0);
 }

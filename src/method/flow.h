@@ -5,13 +5,13 @@
 
 #include "method/method.h"
 
-/* What the three methods are steered by: the beginning of their data. */
+/* Settings of the three methods; the first member of their data. */
 typedef struct {
   PetscReal step, tol; /* -flow_step, -flow_tol */
   PetscBool moebius;   /* -flow_moebius */
 } EqmFlowSettings;
 
-/* -flow_tol unless told otherwise. */
+/* Default of -flow_tol. */
 #define EQM_FLOW_TOL 1e-9
 
 /* (A f)_i per owned vertex, and unless NULL <A f, f>_i = (A f)_i . f_i (004 Definition 3.1). Not collective. */
@@ -29,9 +29,9 @@ PETSC_INTERN PetscErrorCode EqmFlowAccept(EqmProblem problem, EqmIterate iterate
                                           PetscReal time_step);
 /* The options -flow_*, which the three methods share. Collective. */
 PETSC_INTERN PetscErrorCode EqmFlowSetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject);
-/* For the `state` of the three methods: the time step, and whether the method has come to its end. Collective. */
+/* For the `state` of the three methods: the time step, and whether the method has converged. Collective. */
 PETSC_INTERN PetscErrorCode EqmFlowState(EqmMethod method, EqmState state, PetscReal *time_step, PetscBool *ended);
-/* Has the energy changed by less than -flow_tol? Then the method has come to its end, says the message. Not collective.
+/* Has the energy changed by less than -flow_tol? Then the method has converged and the message says so. Not collective.
  */
 PETSC_INTERN PetscErrorCode EqmFlowJudge(EqmMethod method, PetscReal change, PetscBool *ended);
 

@@ -1,5 +1,5 @@
-/* L-BFGS on the objective of the problem with the Laplacian metric as initial inverse Hessian. The frames of the
-   domain carry steps and gradients along: the recursion is the Euclidean one on every domain. */
+/* L-BFGS on the objective of the problem with the Laplacian metric as initial inverse Hessian. Degrees of freedom refer
+   to frames that parallel transport carries along, so the two-loop recursion is the Euclidean one on every domain. */
 #include "method/method.h"
 #include "domain/domain_private.h"
 #include "method/pairs.h"
@@ -74,7 +74,7 @@ static PetscErrorCode ApplyMetric(void *context, Vec q)
 }
 
 /* Armijo, with the parabola's minimum as the next guess; leaves the trial's map, energy and gradient. `t` 0: no
- * decrease. */
+   decrease. */
 static PetscErrorCode Backtrack(EqmMethod method, EqmIterate iterate, PetscReal slope, PetscReal *t, PetscReal *energy)
 {
   Lbfgs *const lb = method->data;
@@ -97,7 +97,7 @@ static PetscErrorCode Backtrack(EqmMethod method, EqmIterate iterate, PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* Frames go with the motion: the velocity keeps its coordinates along the whole geodesic. */
+/* Frames are transported with the motion: the velocity has the same coordinates along the whole geodesic. */
 static PetscErrorCode TryStep(void *context, PetscReal t, PetscReal *value, PetscReal *slope)
 {
   const EqmMethod method = context;
@@ -111,7 +111,7 @@ static PetscErrorCode TryStep(void *context, PetscReal t, PetscReal *value, Pets
   PetscFunctionReturn(0);
 }
 
-/* The map changes less and less: a metric serves twice as long as the one before. */
+/* The map changes less and less: each metric is used for twice as many iterations as the one before. */
 static PetscBool IsRefreshDue(PetscInt first, PetscInt iteration)
 {
   PetscInt due = first;

@@ -22,7 +22,7 @@ struct _p_EqmLoopMetric {
 
 static const PetscReal node_step = 1., node_margin = 4.5, shift = .5;
 
-/* Gaps between neighbours on the loop, on rank 0, and the range of nodes that the spectrum asks for. */
+/* Gaps between neighbours on the loop, on rank 0, and the range of nodes that covers the spectrum. */
 static PetscErrorCode Discretise(EqmLoopMetric metric, const PetscReal *point)
 {
   const PetscInt n = metric->count;

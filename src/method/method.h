@@ -1,7 +1,7 @@
-/* Methods: what makes a better map of a map, step by step.
+/* Methods: iterations that improve a map.
 
    A method is one file. Its create function fills in the operations and a settings structure of its own with defaults;
-   EqmMethodRegister makes it known by name. The problem and the iterate that it works on come with EqmMethodSetUp. */
+   EqmMethodRegister registers it by name. The problem and the iterate that it works on come with EqmMethodSetUp. */
 #ifndef EQM_METHOD_H
 #define EQM_METHOD_H
 
@@ -11,7 +11,7 @@
 #include "problem/state.h"
 #include "problem/term.h"
 
-/* What a step came to. */
+/* The outcome of a step. */
 typedef enum {
   EQM_STEP_TAKEN,
   EQM_STEP_CONVERGED, /* the method's own test is met */
@@ -22,10 +22,10 @@ typedef struct _p_EqmMethod *EqmMethod;
 
 typedef struct {
   PetscErrorCode (*set_from_options)(EqmMethod, PetscOptionItems *); /* may be NULL */
-  /* Get ready for the first step; the iterate holds the first map, its image and totals. Sets objective and gradient
+  /* Set up for the first step; the iterate holds the first map, its image and totals. Sets objective and gradient
      norm (-1: unknown). */
   PetscErrorCode (*set_up)(EqmMethod, EqmIterate);
-  /* Make the iterate a better map: leaves place, image, totals, step length, gradient norm, objective. */
+  /* One step: updates place, image, totals, step length, gradient norm and objective of the iterate. */
   PetscErrorCode (*step)(EqmMethod, EqmIterate, EqmStep *);
   PetscErrorCode (*state)(EqmMethod, EqmIterate,
                           EqmState);    /* what a checkpoint holds beside the map: state.h; or NULL */
@@ -36,7 +36,7 @@ typedef struct {
 struct _p_EqmMethod {
   MPI_Comm comm;
   char name[32];
-  const char *purpose; /* one line for people */
+  const char *purpose; /* one-line description */
   EqmMethodOps ops;
   EqmProblem problem;    /* NULL before EqmMethodSetUp */
   EqmIterate iterate;    /* the one that is worked on, for callbacks */
@@ -48,25 +48,25 @@ struct _p_EqmMethod {
   char message[EQM_MESSAGE_MAX]; /* why there is no further step; empty: nothing special */
 };
 
-/* Make a method known: `create` fills in purpose, operations and data of a new one. Not collective. */
+/* Register a method: `create` fills in purpose, operations and data of a new one. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmMethodRegister(const char *name, PetscErrorCode (*create)(EqmMethod));
-/* Make those of this folder known, unless somebody has registered others under their names (methods.c). Not
+/* Register the methods of this folder, except where others are registered under their names (methods.c). Not
    collective. */
 PETSC_INTERN PetscErrorCode EqmMethodRegisterAll(void);
 /* Is there a method of this name? Not collective. */
 PETSC_INTERN PetscErrorCode EqmMethodIsRegistered(const char *name, PetscBool *is);
-/* Has somebody outside the library registered it? Not collective. */
+/* Is it registered, and not one of the library's own? Not collective. */
 PETSC_INTERN PetscErrorCode EqmMethodIsForeign(const char *name, PetscBool *foreign);
 /* Errors: EQM_ERR_USAGE (no such method). Collective. */
 PETSC_INTERN PetscErrorCode EqmMethodCreate(MPI_Comm comm, const char *name, EqmMethod *method);
 PETSC_INTERN PetscErrorCode EqmMethodDestroy(EqmMethod *method);
 /* Between PetscOptionsBegin and PetscOptionsEnd. Collective. */
 PETSC_INTERN PetscErrorCode EqmMethodSetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject);
-/* Get ready for the first step from the iterate; once more: begin anew from this one. Collective. */
+/* Set up for the first step from the iterate; may be called again to restart from another. Collective. */
 PETSC_INTERN PetscErrorCode EqmMethodSetUp(EqmMethod method, EqmProblem problem, EqmIterate iterate);
 /* One step. Collective. */
 PETSC_INTERN PetscErrorCode EqmMethodStep(EqmMethod method, EqmIterate iterate, EqmStep *outcome);
-/* Save or load what the next step takes over from the ones before. Collective. */
+/* Save or load the state that the next step depends on. Collective. */
 PETSC_INTERN PetscErrorCode EqmMethodVisitState(EqmMethod method, EqmIterate iterate, EqmState state);
 /* Free work space; settings stay. Collective. */
 PETSC_INTERN PetscErrorCode EqmMethodReset(EqmMethod method);
@@ -88,7 +88,7 @@ PETSC_INTERN PetscErrorCode EqmMethodCreateEulerImplicit(EqmMethod method);
 typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
 PETSC_INTERN PetscErrorCode EqmLbfgsSetMemory(EqmMethod lbfgs, PetscInt memory);
 PETSC_INTERN PetscErrorCode EqmLbfgsSetLineSearch(EqmMethod lbfgs, EqmLbfgsLineSearch search);
-/* Begin anew at the present map, whose objective may have changed: without pairs, with a metric from here. Collective.
+/* Restart at the present map, whose objective may have changed: without pairs, with a metric from here. Collective.
  */
 PETSC_INTERN PetscErrorCode EqmLbfgsRestart(EqmMethod lbfgs, EqmIterate iterate);
 /* At most so many quasi-Newton steps on each factor. */

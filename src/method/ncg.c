@@ -1,5 +1,5 @@
-/* Preconditioned nonlinear conjugate gradients (000 Algorithm 1), with refreshed preconditioner, other betas and a
- * guard. */
+/* Preconditioned nonlinear conjugate gradients (000 Algorithm 1), with refreshed preconditioner, other choices of beta
+   and a safeguard. */
 #include "method/method.h"
 #include "domain/domain_private.h"
 
@@ -101,7 +101,7 @@ static PetscErrorCode TryGradient(EqmMethod method, EqmIterate iterate, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* What the convergence theorem takes for granted and (18) does not give: sufficient decrease and an ordered boundary.
+/* Conditions of the convergence theorem that (18) does not ensure: sufficient decrease and an ordered boundary.
    The step is shortened until both hold; `alpha` 0 if none does. Leaves map, energy and gradient of the step in the
    trial. */
 static PetscErrorCode Safeguard(EqmMethod method, EqmIterate iterate, PetscReal slope, PetscReal *alpha,
@@ -184,7 +184,8 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   PetscFunctionReturn(0);
 }
 
-/* SetUp makes gradient and preconditioned gradient anew, the latter with the factor of another map. */
+/* SetUp recomputes gradient and preconditioned gradient, the latter with the factor of another map: the saved ones
+   replace them. */
 static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
   Ncg *const ncg = method->data;

@@ -6,7 +6,7 @@ struct _p_EqmPairs {
   PetscReal *curvature; /* s.y */
 };
 
-/* Room for `most` pairs of vectors like `like`. Collective. */
+/* Allocate `most` pairs of vectors with the layout of `like`. Collective. */
 PetscErrorCode EqmPairsCreate(Vec like, PetscInt most, EqmPairs *out)
 {
   EqmPairs pairs;
@@ -42,7 +42,7 @@ PetscErrorCode EqmPairsForget(EqmPairs pairs)
 }
 
 /* Remember the step scale * step and the change of the gradient over it, unless its curvature is not positive.
- * Collective. */
+   Collective. */
 PetscErrorCode EqmPairsAdd(EqmPairs pairs, PetscReal scale, Vec step, Vec old_gradient, Vec new_gradient)
 {
   const PetscInt place = (pairs->oldest + pairs->count) % pairs->most;
@@ -53,7 +53,7 @@ PetscErrorCode EqmPairsAdd(EqmPairs pairs, PetscReal scale, Vec step, Vec old_gr
   PetscCall(VecScale(pairs->step[place], scale));
   PetscCall(VecWAXPY(pairs->change[place], -1., old_gradient, new_gradient));
   PetscCall(VecDot(pairs->step[place], pairs->change[place], &curvature));
-  if (pairs->count == pairs->most) { /* the oldest pair is overwritten, whatever comes of the new one */
+  if (pairs->count == pairs->most) { /* the oldest pair is overwritten even if the new one is rejected */
     pairs->oldest = (pairs->oldest + 1) % pairs->most;
     pairs->count--;
   }
@@ -86,7 +86,7 @@ PetscErrorCode EqmPairsDirection(EqmPairs pairs, EqmApplyInverse apply, void *co
   PetscFunctionReturn(0);
 }
 
-/* The pairs from the oldest to the newest; where in the ring they stand has no influence on anything. */
+/* The pairs from the oldest to the newest; their position in the ring does not matter. */
 PetscErrorCode EqmPairsState(EqmPairs pairs, EqmState state, EqmStateVec visit, void *context)
 {
   PetscInt count = pairs->count;

@@ -1,5 +1,5 @@
-/* The two-phase quasi-implicit Euler method (004 Algorithm 5.1). Phase I, (I + dt A) f' = f, forgets a poor start;
-   phase II, (I + dt (A - <A f, f>)) f' = f, goes to the harmonic map, and its matrix is indefinite. */
+/* The two-phase quasi-implicit Euler method (004 Algorithm 5.1). Phase I, (I + dt A) f' = f, damps a poor first map;
+   phase II, (I + dt (A - <A f, f>)) f' = f, converges to the harmonic map; its matrix is indefinite. */
 #include "method/flow.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { MOST_ATTEMPTS = 60, MOST_STEPS_IN_PHASE1 = 10, MOST_CUTS = 3, MOST_SHRINKS = 10, MOST_RESTARTS = 20 };
-static const PetscReal collapsed = .5, near_enough = .1; /* epsilon 2 and 3 of S1.a and S1.c */
+static const PetscReal collapsed = .5, near_enough = .1; /* epsilon_2 and epsilon_3 of S1.a and S1.c */
 
 typedef struct {
   EqmFlowSettings flow;
@@ -108,7 +108,7 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
   }
 }
 
-/* Phase I keeps its factor for as long as the time step stays: made anew when a run goes on. */
+/* Phase I reuses its factor while the time step stays the same; a restarted run factors again. */
 static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
   Qiem *const q = method->data;
@@ -155,7 +155,7 @@ static PetscErrorCode Attempt(EqmMethod method, EqmIterate iterate, PetscReal *e
   PetscFunctionReturn(0);
 }
 
-/* Is the strategy switched on? */
+/* Is the strategy among those that -qiem_phase1 or -qiem_phase2 lists? */
 static PetscBool Uses(const char *strategies, char letter)
 {
   return (PetscBool)(strchr(strategies, letter) != NULL);
@@ -177,7 +177,7 @@ static PetscErrorCode Restart(EqmMethod method, EqmIterate iterate, PetscReal dt
   PetscFunctionReturn(0);
 }
 
-/* What to do with a trial: take it, or try again with what has been changed. */
+/* Accept a trial, or repeat the step with other parameters. */
 typedef enum { TAKE, AGAIN } Verdict;
 
 /* S1.a: a map that collapses to a point; S1.b: an energy that does not fall. */
@@ -198,7 +198,7 @@ static PetscErrorCode JudgePhase1(EqmMethod method, EqmIterate iterate, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* The end of phase I, or S1.c: a fresh beginning when it takes too long, unless it would be the same again. */
+/* The end of phase I, or S1.c: a restart when it takes too long, unless the restart would repeat the same steps. */
 static PetscErrorCode AfterPhase1(EqmMethod method, EqmIterate iterate, PetscReal change)
 {
   Qiem *const q = method->data;
@@ -216,8 +216,9 @@ static PetscErrorCode AfterPhase1(EqmMethod method, EqmIterate iterate, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* S2.a: halve the step where the energy rises; S2.b: after three times begin anew with a smaller first step; S2.c: a
-   shorter step where the energy changed ten times as much as before, but not for ever: it may hardly have changed then.
+/* S2.a: halve the step where the energy rises; S2.b: after three halvings restart with a smaller first step; S2.c: a
+   shorter step where the energy changed ten times as much as before, a limited number of times: the change before may
+   have been negligible.
  */
 static PetscErrorCode JudgePhase2(EqmMethod method, EqmIterate iterate, PetscReal energy, Verdict *verdict)
 {
@@ -237,7 +238,7 @@ static PetscErrorCode JudgePhase2(EqmMethod method, EqmIterate iterate, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* The other half of S2.c: a longer step next time; and the end. */
+/* The other half of S2.c, a longer step next time; convergence. */
 static PetscErrorCode AfterPhase2(EqmMethod method, EqmIterate iterate, PetscReal change)
 {
   Qiem *const q = method->data;
@@ -274,7 +275,8 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   q->steps++;
   PetscCall(EqmPlaceCopy(method->problem->domain, &q->trial, &iterate->place));
   if (phase == 2)
-    PetscCall(EqmSphereOrient(method->problem, iterate)); /* its matrix may mirror a map, which is as good */
+    PetscCall(EqmSphereOrient(method->problem,
+                              iterate)); /* the indefinite matrix may mirror the map, which has the same energy */
   PetscCall(EqmPlaceMakeFrames(method->problem->domain, &iterate->place));
   PetscCall(phase == 1 ? AfterPhase1(method, iterate, change) : AfterPhase2(method, iterate, change));
   PetscCall(EqmFlowAccept(method->problem, iterate, &iterate->place, dt));

@@ -85,7 +85,7 @@ static PetscErrorCode Interpolate(EqmMethod method, EqmIterate iterate, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* On (0, 1) by Brent's method, which the paper takes from its environment. 0: no decrease. */
+/* Bounded minimisation on (0, 1) by Brent's method; the paper uses a library routine. 0: no decrease. */
 static PetscErrorCode Minimise(EqmMethod method, EqmIterate iterate, PetscReal *alpha)
 {
   PetscReal value;

@@ -9,7 +9,7 @@ typedef struct {
   EqmRiemann riemann;
   EqmLoopMetric metric;
   EqmPairs pairs;
-  EqmPlace trial, metric_of; /* the latter: the map that the metric belongs to */
+  EqmPlace trial, metric_of; /* metric_of: the map that the metric was made for */
   Vec gradient, trial_gradient, direction;
 } Riemann;
 
@@ -101,7 +101,7 @@ static PetscErrorCode ApplyMetric(void *context, Vec q)
 }
 
 /* Armijo by halving, from the longest step that keeps the boundary's order; leaves the trial's map, energy and
- * gradient. `t` 0: no decrease. */
+   gradient. `t` 0: no decrease. */
 static PetscErrorCode Backtrack(EqmMethod method, EqmIterate iterate, PetscReal slope, PetscReal *t, PetscReal *energy)
 {
   enum { MOST_TRIALS = 25 };

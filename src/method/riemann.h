@@ -9,8 +9,9 @@
        E(theta) = 1/2 z^H L z - 1/2 sum sin(theta_{j+1} - theta_j) + 1/2 |h . z_B|^2,  h = m_B - L_BI L_II^-1 m_I.
 
    The first two terms are the Dirichlet energy less the area that the boundary encloses, zero for conformal maps alone.
-   The last holds the mass centre c = sum m z = h . z_B (m: lumped mass, one in all) at the disk's: conformal maps of
-   the disk to itself change the first two by the error of the mesh only, and would drift. */
+   The last fixes the mass centre c = sum m z = h . z_B (m: lumped mass, one in all) at the disk's: conformal maps of
+   the disk to itself change the first two terms only by the discretisation error, so that without it the iterates would
+   drift. */
 typedef struct _p_EqmRiemann *EqmRiemann;
 struct _p_EqmRiemann {
   PetscInt num_boundary; /* owned vertices on the boundary */
@@ -27,14 +28,14 @@ PETSC_INTERN PetscErrorCode EqmRiemannCreate(EqmProblem problem, EqmRiemann *rie
 PETSC_INTERN PetscErrorCode EqmRiemannDestroy(EqmRiemann *riemann);
 /* A vector of boundary angles. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannCreateVec(EqmProblem problem, EqmRiemann riemann, Vec *angles);
-/* Turn the boundary by t times `angles`; the interior is left where it was. Collective. */
+/* Add t times `angles` to the boundary's angles; the interior is not moved. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannMove(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from, PetscReal t,
                                            Vec angles, EqmPlace *to);
 /* The largest t in (0, 1] for which t times `angles` keeps the boundary's order, with a margin. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from,
                                                   Vec angles, PetscReal *t);
-/* E and its gradient by the angles, where `place` has the boundary; puts the interior at its place. Two solves, one
-   evaluation. Collective. */
+/* E and its gradient with respect to the angles for the boundary of `place`; moves the interior to its harmonic images.
+   Two solves, one evaluation. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannEnergy(EqmProblem problem, EqmRiemann riemann, EqmPlace *place, PetscReal *energy,
                                              Vec gradient);
 /* Bring the mass centre to the disk's centre by a Moebius map of the disk to itself, applied to the boundary.

@@ -9,7 +9,7 @@ typedef struct {
   PetscReal t, value, slope;
 } Sample;
 
-/* The minimum of the cubic through two samples, kept off the ends of their interval by a tenth of its length. */
+/* The minimum of the cubic through two samples, clamped to a tenth of the interval's length from its ends. */
 static PetscReal CubicMinimum(const Sample *a, const Sample *b)
 {
   const PetscReal low = PetscMin(a->t, b->t), width = PetscAbsReal(a->t - b->t);
@@ -27,7 +27,7 @@ static PetscReal CubicMinimum(const Sample *a, const Sample *b)
 
 /* EqmWolfeSearch - a step length t with value(t) <= value + c1 t slope and |slope(t)| <= c2 |slope|.
 
-   Collective. value, slope - at t = 0, the slope negative; t - 1 is tried first; the last trial is that of the answer;
+   Collective. value, slope - at t = 0, the slope negative; t - 1 is tried first; the last trial is the one returned;
    if the second condition is not met within the trials, the best length that meets the first, 0 if there is none. */
 PetscErrorCode EqmWolfeSearch(EqmTryStep try_step, void *context, PetscReal value, PetscReal slope, PetscReal *t,
                               PetscReal *new_value)

@@ -4,7 +4,7 @@
 
 #include <petscsys.h>
 
-/* Value and slope of a function of the step length; what else there is of the trial is the caller's. Collective. */
+/* Value and slope of a function of the step length; the caller keeps the rest of the trial. Collective. */
 typedef PetscErrorCode (*EqmTryStep)(void *context, PetscReal t, PetscReal *value, PetscReal *slope);
 
 PETSC_INTERN PetscErrorCode EqmWolfeSearch(EqmTryStep try_step, void *context, PetscReal value, PetscReal slope,

@@ -1,4 +1,4 @@
-/* The bars of colours that say what the pictures' colours stand for. */
+/* Colour bars: the legends of the pictures. */
 #ifdef EQM_HAVE_CAIRO
 #include "picture/page.h"
 #include <math.h>
@@ -38,7 +38,7 @@ static void DrawEnds(cairo_t *cairo, EqmBox box, const char *left, const char *r
   EqmDrawText(cairo, box.x + box.width + 14, box.y + box.height - 1, 13, PETSC_FALSE, EQM_LEFT, EQM_INK, right);
 }
 
-/* The farthest of all ratios or stretches from one. */
+/* The ratio or stretch farthest from one. */
 static double Farthest(const EqmPage *page)
 {
   double farthest = 0.0;

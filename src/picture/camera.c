@@ -1,4 +1,4 @@
-/* Where the camera stands. */
+/* Camera positions. */
 #include "picture/picture.h"
 #include <math.h>
 
@@ -73,7 +73,7 @@ static int LargestComponent(const double a[3])
   return largest;
 }
 
-/* Long things are seen from their long side: is the mesh much longer along z than along x? */
+/* Long meshes are seen from their long side: is the mesh much longer along z than along x? */
 static PetscBool IsLong(const EqmFaces *faces, const PetscReal *points)
 {
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -87,13 +87,13 @@ static PetscBool IsLong(const EqmFaces *faces, const PetscReal *points)
   return (PetscBool)(high[2] - low[2] > 1.4 * (high[0] - low[0]));
 }
 
-/* Which way is up, where the front is, and from where a mesh is seen well. */
+/* Choose the up axis, the front, and the view direction of a mesh. */
 typedef struct {
   double pole[3], front[3], azimuth, elevation;
 } Stand;
 
-/* Scans stand on y and look along z. A surface that is open on one side, as a scan cut at its neck, stands on its
-   opening; a relief, whose normals all lean to one side, is seen from there. */
+/* In scans y is up and z is the front. A surface that is open on one side, as a scan cut at its neck, has the opening
+   below; a relief, whose normals point to one side, is seen from that side. */
 static Stand Guess(const EqmFaces *faces, const PetscReal *points)
 {
   Stand stand = {{0, 1, 0}, {0, 0, 1}, 25.0, 12.0};

@@ -1,4 +1,4 @@
-/* The figures of a result that a page lists, as people read them. */
+/* The figures of a result that a page lists, as formatted text. */
 #ifndef EQM_FIGURES_H
 #define EQM_FIGURES_H
 

@@ -1,4 +1,4 @@
-/* A result file, read back to be looked at. */
+/* Read a result file for a report. */
 #include "picture/picture.h"
 #include "mesh/mesh_private.h"
 #include "h5/h5.h"

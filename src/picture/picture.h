@@ -1,4 +1,4 @@
-/* What people look at: a page of pictures and plots of one result, or of several beside each other. All but
+/* Reports: a page of pictures and plots of one result, or of several beside each other. All but
    EqmReportWrite runs on one rank and is not collective. */
 #ifndef EQM_PICTURE_H
 #define EQM_PICTURE_H
@@ -11,7 +11,7 @@ enum { EQM_MOST_RESULTS = 8 };
 /* How a report is drawn. */
 typedef struct {
   PetscInt width;    /* of the page in pixels */
-  PetscBool has_eye; /* look from `azimuth` and `elevation`, in place of where the mesh seems to want it */
+  PetscBool has_eye; /* use `azimuth` and `elevation` instead of a view chosen for the mesh */
   PetscReal azimuth, elevation;
   char up[4]; /* the axis that points up: x, y, z, -x, -y, -z; empty: guessed */
 } EqmReportOptions;
@@ -61,7 +61,7 @@ PETSC_INTERN PetscErrorCode EqmResultReset(EqmResult *result);
 /* Compute what is not stored: weights, statistics, distances, the worst cells. */
 PETSC_INTERN PetscErrorCode EqmResultEvaluate(EqmResult *result);
 
-/* What the pictures of a result show: ratios, or what becomes of angles where the map is meant to keep these. */
+/* What the pictures of a result show: ratios, or for angle-preserving maps the quasi-conformal distortion. */
 PETSC_INTERN PetscBool EqmResultIsConformal(const EqmResult *result);
 /* What shows how the iteration went, per row of the history, and its name: the energy; of a conformal map, whose energy
    is far from zero, the norm of the gradient or, where the method has none, what the energy is above its smallest
@@ -97,9 +97,9 @@ PETSC_INTERN EqmCamera EqmCameraFlat(void);
 /* A camera that sees `pole` upwards and starts from the side of `front`, then walks `azimuth` degrees around the pole
    and rises by `elevation` degrees. */
 PETSC_INTERN EqmCamera EqmCameraTurned(const double pole[3], const double front[3], double azimuth, double elevation);
-/* A view in which most meshes look well, or the one that the options ask for; all faces are just seen. */
+/* A default view, or the one of the options; all faces fit into the picture. */
 PETSC_INTERN EqmCamera EqmCameraChoose(const EqmFaces *faces, const PetscReal *points, const EqmReportOptions *options);
-/* Aim and zoom so that all faces are just seen. */
+/* Aim and zoom so that all faces fit into the picture. */
 PETSC_INTERN void EqmCameraFit(EqmCamera *camera, const EqmFaces *faces, const PetscReal *points);
 /* A point in a square picture of `size` units: x to the right, y down, z towards the camera. */
 PETSC_INTERN void EqmCameraProject(const EqmCamera *camera, double size, const double point[3], double projected[3]);

@@ -1,4 +1,4 @@
-/* Text on a page; numbers as people read them. */
+/* Text on a page; formatted numbers. */
 #ifdef EQM_HAVE_CAIRO
 #include "picture/plot.h"
 #include <libxml/xmlstring.h>

@@ -46,7 +46,7 @@ static PetscErrorCode JoinVertices(const EqmFaces *faces, const PetscReal *point
   PetscFunctionReturn(0);
 }
 
-/* The faces that keep three corners, into `thinned` if there is room for them; how many there are. */
+/* The faces that keep three corners, into `thinned` unless it is too small; returns their number. */
 static PetscInt KeepFaces(const EqmFaces *faces, const PetscInt *joined, EqmFaces *thinned)
 {
   PetscInt kept = 0;

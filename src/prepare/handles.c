@@ -1,5 +1,5 @@
 /* Cut small handles, the topological noise of scans (Guskov and Wood 2001), along a short loop each, and fill both
-   sides. The whole mesh visits rank 0 for it, and so this is for meshes of a limited size. */
+   sides. The whole mesh is gathered on rank 0 for it, so this is for meshes of a limited size. */
 #include "prepare/step.h"
 #include "mesh/mesh_private.h"
 #include "mesh/handles.h"
@@ -60,7 +60,7 @@ static PetscErrorCode CollectCorners(const Surgery *s, PetscInt n, PetscInt **st
 }
 
 /* The corners on the left of the loop: around each vertex from the next one counterclockwise to the one before. False
-   where the boundary is in the way. */
+   if a star has a boundary edge there. */
 static PetscErrorCode FindLeft(const Surgery *s, PetscInt n, const PetscInt *loop, PetscInt *num_left, PetscInt **left,
                                PetscBool *found)
 {
@@ -90,7 +90,7 @@ static PetscErrorCode FindLeft(const Surgery *s, PetscInt n, const PetscInt *loo
   PetscFunctionReturn(0);
 }
 
-/* Edges between vertices of the loop that are none of it, as pairs of places, ascending. */
+/* Edges between vertices of the loop that are not on it, as pairs of positions, ascending. */
 static PetscErrorCode FindChords(const Surgery *s, PetscInt n, PetscInt *num_chords, PetscInt (**chord)[2])
 {
   PetscInt count = 0;
@@ -119,7 +119,7 @@ static PetscErrorCode FindChords(const Surgery *s, PetscInt n, PetscInt *num_cho
   PetscFunctionReturn(0);
 }
 
-/* Room for more, and the new vertices and triangles of a patch whose boundary vertices are `ring`. */
+/* Add the new vertices and triangles of a patch whose boundary vertices are `ring`; grows the arrays. */
 static PetscErrorCode AddPatch(Surgery *s, PetscInt n, const PetscInt *ring, PetscInt num_chords,
                                const PetscInt (*chord)[2])
 {
@@ -201,7 +201,7 @@ static PetscErrorCode CutHandles(PetscReal share, Surgery *s, PetscInt64 *cut)
   PetscFunctionReturn(0);
 }
 
-/* The mesh as it has become: cells go to the list, added vertices to the group. */
+/* Output the changed mesh: cells to the list, added vertices to the group. */
 static PetscErrorCode ListMesh(const Surgery *s, EqmVertexGroup *group, EqmCellList *list)
 {
   PetscFunctionBegin;

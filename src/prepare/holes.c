@@ -149,9 +149,9 @@ static PetscInt FindSamePlace(const Boundary *boundary, PetscInt depth, const Pe
   return -1;
 }
 
-/* Cut loops that come back to the same place, as around a vertex that was cut apart between two holes, into loops that
-   do not: their copies of that vertex become one, for between two fillings it is a regular vertex. The loop `open`
-   stays. Not collective. */
+/* Split loops that pass the same position twice, as around a vertex that was cut apart between two holes, into simple
+   loops. Their copies of that vertex are joined, as between two fillings it is a regular vertex. The loop `open` is not
+   changed. Not collective. */
 static PetscErrorCode CutLoops(PetscInt open, Boundary *boundary)
 {
   const PetscInt n = boundary->num_edges;
@@ -264,7 +264,7 @@ static PetscErrorCode FillLoops(PetscBool all, PetscInt num_kept, Boundary *boun
   PetscFunctionReturn(0);
 }
 
-/* The vertices that have become others, on all ranks: number[i] has become other[i], ascending. They are few. */
+/* Share the joined vertices with all ranks: number[i] was joined to other[i], ascending. They are few. */
 static PetscErrorCode ShareJoined(MPI_Comm comm, const Boundary *boundary, PetscInt *num_joined, PetscInt **number,
                                   PetscInt **other)
 {
@@ -285,7 +285,7 @@ static PetscErrorCode ShareJoined(MPI_Comm comm, const Boundary *boundary, Petsc
   PetscFunctionReturn(0);
 }
 
-/* All cells that are there, and the vertices, with those that have become others. */
+/* List all cells of the mesh, with the numbers of joined vertices replaced. */
 static PetscErrorCode KeepCells(const Boundary *boundary, EqmChange *change, EqmCellList *list)
 {
   const EqmSoup soup = change->soup;

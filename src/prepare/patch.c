@@ -3,7 +3,7 @@
 #include "prepare/step.h"
 #include "geometry/simplex.h"
 
-/* Longer loops lose ears first, until the triangulation of least area, which takes n^3 steps, is affordable. */
+/* From longer loops ears are cut first, as the triangulation of least area takes n^3 steps. */
 enum { MOST_VERTICES = 500 };
 
 int EqmComparePairs(const void *a, const void *b)
@@ -14,7 +14,7 @@ int EqmComparePairs(const void *a, const void *b)
   return (s[1] > t[1]) - (s[1] < t[1]);
 }
 
-/* Do two places of the loop join vertices that an edge of the mesh joins already? */
+/* Are the vertices at two positions of the loop joined by an edge of the mesh? */
 PetscBool EqmPatchIsForbidden(PetscInt a, PetscInt b, PetscInt num_forbidden, const PetscInt (*forbidden)[2])
 {
   const PetscInt key[2] = {PetscMin(a, b), PetscMax(a, b)};
@@ -93,8 +93,8 @@ static PetscErrorCode TakeTriangles(PetscInt n, const PetscInt *corner, const Pe
   PetscFunctionReturn(0);
 }
 
-/* What a triangle costs: its area, and so much for long edges that of equal areas the rounder triangles win and flat
-   ones are a last resort. */
+/* Cost of a triangle: its area, and a smaller term in the edge lengths, which prefers rounder triangles at equal area
+   and avoids flat ones. */
 static PetscReal Cost(const PetscReal *p, const PetscReal *q, const PetscReal *r)
 {
   const PetscReal area = EqmArea3(p, q, r);

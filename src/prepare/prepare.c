@@ -1,10 +1,10 @@
-/* The table of steps, and how they follow each other. */
+/* The table of steps, and the loop over them. */
 #include "prepare/step.h"
 #include "mesh/mesh_private.h"
 #include "base/rows.h"
 #include <string.h>
 
-/* In the order in which they are done: each may make work for the later ones. */
+/* In the order of execution: each may create defects for later ones. */
 static const EqmPrepareStep steps[] = {
     {"weld", "join boundary vertices at the same place, as seams of textures leave them", EqmStepWeld},
     {"split", "remove duplicate cells, cut non-manifold edges and vertices apart, turn what disagrees", EqmStepSplit},
@@ -92,7 +92,7 @@ PetscErrorCode EqmPrepareSetFromOptions(PetscOptionItems *PetscOptionsObject, Eq
   PetscFunctionReturn(0);
 }
 
-/* The mesh as it is, to be changed step by step. */
+/* Begin with the given mesh and identity numberings. */
 static PetscErrorCode Begin(EqmSoup given, EqmPreparation *preparation)
 {
   const PetscInt num_cells = given->cell_end - given->cell_start;
@@ -127,7 +127,7 @@ static PetscErrorCode Follow(MPI_Comm comm, PetscInt slab_size, const PetscInt *
   PetscFunctionReturn(0);
 }
 
-/* One step, if it finds something to do. `num_given` is the size of the given mesh's slab of vertices. */
+/* Run one step, and count its changes. `num_given` is the size of the given mesh's slab of vertices. */
 static PetscErrorCode RunStep(const EqmPrepareStep *step, const EqmPrepareOptions *options, PetscInt num_given,
                               EqmPreparation *preparation)
 {
@@ -194,7 +194,7 @@ PetscErrorCode EqmSoupPrepare(EqmSoup given, const EqmPrepareOptions *options, E
   PetscCall(RunSteps(given, options, (PetscBool)(automatic && !ready), PETSC_FALSE, preparation));
   if (!automatic || ready || !preparation->num_steps || strcmp(preparation->step[0].step, "weld"))
     PetscFunctionReturn(0);
-  /* a seam may be the cut that makes a surface a disk: where welding spoils the mesh, do without */
+  /* a seam may be the cut that makes a surface a disk: if the mesh is refused after welding, skip it */
   PetscCall(IsReady(preparation->soup, options->target, &ready));
   if (ready) PetscFunctionReturn(0);
   PetscCall(EqmPreparationReset(preparation));

@@ -14,10 +14,10 @@ typedef struct {
   PetscReal weld_tolerance; /* of `weld`: distance, as a share of the mesh's diameter */
   PetscReal handle_length;  /* of `handles`: loops up to this length, as a share of the mesh's diameter, are cut */
   PetscBool repair;         /* at the end EqmSoupRepair */
-  const char *target;       /* a target's name, or NULL: what the mesh's topology asks for */
+  const char *target;       /* a target's name, or NULL: that of the mesh's topology */
 } EqmPrepareOptions;
 
-/* What a step has done. */
+/* Result of a step. */
 typedef struct {
   const char *step; /* its name */
   PetscInt64 count; /* of things changed, 0: nothing was to be done */
@@ -26,7 +26,7 @@ typedef struct {
 
 enum { EQM_MAX_PREPARED_STEPS = 8 };
 
-/* A prepared mesh, and the way back to the one that was given. */
+/* A prepared mesh, and the numberings back to the given one. */
 typedef struct {
   EqmSoup soup;     /* vertices of the given mesh keep their numbers, added ones follow */
   PetscInt *parent; /* per cell of its slab: the cell of the given mesh that it comes from, -1: it was added */
@@ -34,7 +34,7 @@ typedef struct {
   PetscInt num_steps;
   EqmPreparedStep step[EQM_MAX_PREPARED_STEPS]; /* those that changed something */
   EqmRepair repair;                             /* counts of EqmSoupRepair, also where it changed nothing */
-  PetscBool is_changed;                         /* the soup is not the given mesh any more */
+  PetscBool is_changed;                         /* the soup differs from the given mesh */
 } EqmPreparation;
 
 /* Defaults. Not collective. */

@@ -1,4 +1,5 @@
-/* Remove duplicate cells, cut a surface apart where it is not a manifold, turn what disagrees with its neighbours. */
+/* Remove duplicate cells, cut a surface apart where it is not a manifold, reorient cells that disagree with their
+   neighbours. */
 #include "prepare/step.h"
 #include "mesh/mesh_private.h"
 #include "base/exchange.h"
@@ -12,7 +13,7 @@ typedef struct {
   PetscInt64 cut; /* vertices of which there are copies */
 } Cut;
 
-/* The fans of an owned vertex: triangles of its star that hang together through edges of two triangles (Gueziec et al.
+/* The fans of an owned vertex: triangles of its star that are connected through edges of two triangles (Gueziec et al.
    2001). `fan` is per triangle of the star the first one of its fan. */
 static void FindFans(const EqmVicinity *vicinity, PetscInt v, const EqmLink *link, PetscInt *place, PetscInt *fan)
 {
@@ -157,7 +158,7 @@ static PetscErrorCode ListCells(const EqmVicinity *vicinity, const Cut *cut, Pet
   PetscFunctionReturn(0);
 }
 
-/* Of solids only duplicates and orientation: what else is wrong with one has no safe cure. `count` is of all changes.
+/* For solids only duplicates and orientation: other defects have no safe repair. `count` is of all changes.
  */
 PetscErrorCode EqmStepSplit(const EqmPrepareOptions *options, EqmChange *change, EqmPreparedStep *report)
 {

@@ -1,4 +1,4 @@
-/* Join boundary vertices that lie at the same place: seams that programs tear open for their texture coordinates. */
+/* Join boundary vertices at the same position: seams that programs cut for their texture coordinates. */
 #include "prepare/step.h"
 #include "mesh/mesh_private.h"
 #include "base/exchange.h"
@@ -21,7 +21,8 @@ static int ComparePlaces(const void *a, const void *b)
   return (s->number > t->number) - (s->number < t->number);
 }
 
-/* Label every point by the lowest number among those that hang together by steps of at most `distance`. Not collective.
+/* Label every point by the lowest number of its cluster: points connected by distances of at most `distance`. Not
+   collective.
  */
 static PetscErrorCode JoinPoints(PetscInt n, Point *point, PetscReal distance, PetscInt *num_joined)
 {
@@ -42,7 +43,7 @@ static PetscErrorCode JoinPoints(PetscInt n, Point *point, PetscReal distance, P
       if (x * x + y * y + z * z <= distance * distance)
         (void)EqmSetJoin(set, i, j);
       else if (distance == 0.)
-        break; /* equal points stand together, and many may have one first coordinate */
+        break; /* equal points are adjacent, and many may have the same first coordinate */
     }
   }
   for (PetscInt i = 0; i < n; i++) {
@@ -76,7 +77,7 @@ static PetscErrorCode Diameter(const EqmVicinity *vicinity, PetscReal *diameter)
   PetscFunctionReturn(0);
 }
 
-/* The boundary vertices of all ranks on rank 0, and what becomes of them: `label` per owned vertex. */
+/* Gather the boundary vertices on rank 0 and label them: `label` per owned vertex. */
 static PetscErrorCode LabelBoundary(const EqmVicinity *vicinity, PetscReal distance, PetscInt *label,
                                     PetscInt *num_joined)
 {

@@ -1,4 +1,4 @@
-/* Maps to the sphere seen from a pole: stereographic caps, and the fixed-point step of 001 Algorithm 2 on them. */
+/* Maps to the sphere in stereographic coordinates about a pole, and the fixed-point step of 001 Algorithm 2 on them. */
 #include "problem/problem.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
@@ -6,7 +6,7 @@
 
 const PetscReal EqmSmallestImage = 4e-15;
 
-/* Points of the plane (two reals per vertex) and of the sphere, seen from the pole `up` = +1 (north) or -1. */
+/* Stereographic projection from the pole `up` = +1 (north) or -1: three reals per vertex to two. */
 static void ToPlane(PetscInt n, PetscReal up, const PetscReal *x, PetscReal *z)
 {
   for (PetscInt v = 0; v < n; v++) {

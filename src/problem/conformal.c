@@ -1,10 +1,10 @@
 /* Angle-preserving maps: the Dirichlet energy; and for those of closed surfaces the objective E_D - A + |c|^2/2, its
-   metric, its step limit. The last term holds the mass centre c: Mobius maps change the first two by the error of the
-   mesh only, and would drift. */
+   metric, its step limit. The last term fixes the mass centre c: Mobius maps change the first two terms only by the
+   discretisation error, so that without it the iterates would drift. */
 #include "problem/objective.h"
 #include "domain/domain_private.h"
 
-/* Those of the areas, but the energy is Dirichlet's, 1/2 tr f^T L f with the mesh's cotangents. */
+/* The totals of the areas with the Dirichlet energy 1/2 tr f^T L f, L with the mesh's cotangent weights. */
 static PetscErrorCode SumDirichlet(EqmProblem problem, EqmIterate iterate)
 {
   const PetscReal *weights;
@@ -17,7 +17,7 @@ static PetscErrorCode SumDirichlet(EqmProblem problem, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
-/* From a map without folds, a map with folds is as good as none. */
+/* A trial that folds is rejected where the iterate does not fold: its value is infinite. */
 static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, const EqmPlace *place, PetscReal *image,
                                PetscReal *value, Vec gradient)
 {
@@ -48,8 +48,7 @@ static PetscErrorCode CotangentMetric(EqmProblem problem, const EqmPlace *place,
   PetscFunctionReturn(0);
 }
 
-/* Is c0 + c1 t + c2 t^2 + c3 t^3 surely positive from `from` to `to`? Its values lie between its Bernstein
- * coefficients. */
+/* Are all Bernstein coefficients of c0 + c1 t + c2 t^2 + c3 t^3 on [from, to] positive? They bound its values. */
 static PetscBool IsPositive(const PetscReal c[4], PetscReal from, PetscReal to)
 {
   const PetscReal h = to - from, v0 = c[0] + from * (c[1] + from * (c[2] + from * c[3]));

@@ -2,8 +2,8 @@
 #include "problem/problem.h"
 #include "domain/domain_private.h"
 
-/* A solver with the domain's degrees of freedom as unknowns. The start's own, a quarter of the memory and of no more
-   use, goes. Collective. */
+/* A solver with the domain's degrees of freedom as unknowns. The scalar solver of the start, a quarter of the memory
+   and no longer needed, is destroyed. Collective. */
 PetscErrorCode EqmProblemCreateLinear(EqmProblem problem, EqmMatrixUse use, EqmLinear *linear)
 {
   const EqmUnknowns unknowns = EqmDomainUnknowns(problem->domain);
@@ -16,7 +16,7 @@ PetscErrorCode EqmProblemCreateLinear(EqmProblem problem, EqmMatrixUse use, EqmL
   PetscFunctionReturn(0);
 }
 
-/* Tell `linear`, if it wants to know, of motions that the matrix hardly sees: `field` gives the velocity of the field
+/* Near-null fields for `linear`, if it uses them (multigrid): `field` gives the velocity of the field
    of number `which` at the place x of a vertex, in space. Collective. */
 PetscErrorCode EqmProblemSetFields(EqmProblem problem, const EqmPlace *place, EqmLinear linear, PetscInt count,
                                    void (*field)(PetscInt which, const PetscReal *x, PetscReal *velocity))

@@ -1,4 +1,4 @@
-/* Maps under way. */
+/* Iterates: the map that a run works on. */
 #include "problem/problem.h"
 #include "mesh/mesh_private.h"
 #include "problem/objective.h"

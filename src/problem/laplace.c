@@ -30,7 +30,7 @@ static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
   }
 }
 
-/* One unknown per vertex; made at the first need. */
+/* One unknown per vertex; created on first use. */
 static PetscErrorCode MakeScalar(EqmProblem problem)
 {
   const EqmMesh mesh = problem->mesh;
@@ -84,19 +84,20 @@ static PetscErrorCode AddCorrection(EqmProblem problem, const PetscReal *weights
 {
   const EqmMesh mesh = problem->mesh;
   const PetscInt n = mesh->num_owned;
-  PetscReal *pull, *columns;
+  PetscReal *residual, *columns;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(width * n, &pull, width * n, &columns));
-  PetscCall(EqmLaplacianApply(mesh, weights, width, z, pull));
+  PetscCall(PetscMalloc2(width * n, &residual, width * n, &columns));
+  PetscCall(EqmLaplacianApply(mesh, weights, width, z, residual));
   for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt k = 0; k < width; k++) columns[k * n + v] = group[v] == EQM_GROUP_FIXED ? 0. : -pull[width * v + k];
+    for (PetscInt k = 0; k < width; k++)
+      columns[k * n + v] = group[v] == EQM_GROUP_FIXED ? 0. : -residual[width * v + k];
   }
   PetscCall(EqmGroupSolve(problem, width, columns));
   for (PetscInt v = 0; v < n; v++) {
     for (PetscInt k = 0; k < width && group[v] != EQM_GROUP_FIXED; k++) z[width * v + k] += columns[k * n + v];
   }
-  PetscCall(PetscFree2(pull, columns));
+  PetscCall(PetscFree2(residual, columns));
   PetscCall(EqmMeshUpdateGhosts(mesh, width, z));
   PetscFunctionReturn(0);
 }

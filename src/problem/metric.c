@@ -1,9 +1,9 @@
 /* A Laplacian, of most objectives the stretch Laplacian, as a metric for gradients. In the plane M = blkdiag(L_II,
-   L_BB) (000 section 3.2), degree of freedom by degree of freedom, angles and slides with the first coordinate. On the
-   sphere the gradient is a field in space: each coordinate is solved with the Laplacian and a mass, and the result
-   projected back (docs/methods.md, Published methods). In the ball no Laplacian knows that the energy is stiff for
-   compression and soft for everything else: there the metric is the Gauss-Newton matrix with a little of L_V, coupled
-   over all coordinates (docs/methods.md, Solids). */
+   L_BB) (000 section 3.2), degree of freedom by degree of freedom, angles and positions along sides with the first
+   coordinate. On the sphere the gradient is a field in space: each coordinate is solved with the Laplacian and a mass,
+   and the result projected back (docs/methods.md, Published methods). In the ball the energy is stiff for compression
+   and soft for all other deformations, which no scalar Laplacian represents: there the metric is the Gauss-Newton
+   matrix with a little of L_V, coupled over all coordinates (docs/methods.md, Solids). */
 #include "problem/metric.h"
 #include "domain/domain_private.h"
 #include "energy/cellframe.h"
@@ -16,19 +16,19 @@ struct _p_EqmMetric {
   PetscReal *weights;
   EqmPlace at;            /* the map that the present factor belongs to */
   EqmLinear gauss_newton; /* in the ball, with vertices in frames; else NULL, and there is a Laplacian, below */
-  EqmPlace coarse_at;     /* the map that the coarse spaces of multigrid belong to, and whether they serve on */
+  EqmPlace coarse_at;     /* the map that multigrid's coarse spaces were built for, and whether they are reused */
   PetscBool keeps_coarse;
   PetscReal *mass, *columns, *ambient;
   signed char *group;
 };
 
-/* A vertex in spherical coordinates has no frame that a factor could turn with. */
+/* A vertex in spherical coordinates has no orthonormal frame, in which the coupled matrix is assembled. */
 static PetscBool NeedsGaussNewton(EqmDomain domain)
 {
   return (PetscBool)(domain->measure == EQM_MEASURE_VOLUME && !domain->spherical_coordinates);
 }
 
-/* What a Laplacian's matrix and its columns of right-hand sides take. */
+/* Allocate the work space of a Laplacian metric: columns of right-hand sides. */
 static PetscErrorCode CreateLaplacian(EqmProblem problem, EqmMetric metric)
 {
   const EqmMesh mesh = problem->mesh;
@@ -83,7 +83,7 @@ typedef struct {
   const PetscReal *weights; /* of L_V */
 } GaussNewton;
 
-/* Of L_V in the metric of the ball. */
+/* Weight of L_V in the metric of the ball. */
 static const PetscReal l_v_share = .05;
 
 /* Half of the objective's Hessian times A without the curvature of the cells: da da^T / w of the energy, a share of L_V
@@ -106,7 +106,8 @@ static void CellGaussNewton(void *context, PetscInt cell, PetscReal *matrix)
   EqmTermsAddMatrix(gn->problem, gn->place, gn->image, cell, &frame, domain->target_measure, matrix);
 }
 
-/* Without compression, and the smoothest that there are. Rotations cost a third more per cycle and save less. */
+/* Translations are the smoothest fields without compression. Rotations as well would cost a third more per cycle and
+   save less. */
 static void Translation(PetscInt which, const PetscReal *x, PetscReal *velocity)
 {
   (void)x;
@@ -134,7 +135,7 @@ static PetscErrorCode FactorGaussNewton(EqmMetric metric, const EqmPlace *place)
   PetscFunctionReturn(0);
 }
 
-/* Factor what belongs to a map. The matrices of added terms change too much for common coarse spaces. */
+/* Factor the matrix of a map. With added terms the matrices change too much to reuse coarse spaces. */
 static PetscErrorCode FactorAt(EqmMetric metric, const EqmPlace *place)
 {
   const EqmProblem problem = metric->problem;

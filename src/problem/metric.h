@@ -1,4 +1,4 @@
-/* The metric of descent: turns gradients of the objective into directions. */
+/* Metrics (preconditioners) for descent: they turn gradients of the objective into directions. */
 #ifndef EQM_METRIC_H
 #define EQM_METRIC_H
 

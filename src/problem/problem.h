@@ -1,4 +1,4 @@
-/* One instance of what is solved, and one map under way.
+/* A problem instance, and an iterate of its solution.
 
    A problem is a mesh, the domain that its vertices move in, the objective that is minimised, and what all of them
    share: the elimination order, the scalar Laplacian, cotangent weights, lumped masses. An iterate is a map and what is
@@ -37,24 +37,24 @@ struct _p_EqmProblem {
   EqmLandmarks landmarks;
   struct _p_EqmTerm *terms; /* added to the objective (term.h); NULL: none */
 
-  EqmLinear scalar; /* one unknown per vertex: Laplacians of all kinds; NULL until the first need */
+  EqmLinear scalar; /* one unknown per vertex: Laplacians of all kinds; NULL before the first use */
   unsigned char *scalar_count;
   PetscBool holds_fixed_metric; /* `scalar` has the factor of the objective's fixed metric */
   PetscReal *angle_weights,
-      *vertex_mass;                    /* of EqmProblemGetAngleWeights, ...GetVertexMass; NULL until the first need */
+      *vertex_mass;                    /* of EqmProblemGetAngleWeights, ...GetVertexMass; NULL before the first use */
   char linear_solver[EQM_LINEAR_TEXT]; /* what solves with the matrices */
 
-  PetscErrorCode (*notify)(void *context, const char *text);        /* news for people; NULL: nobody listens */
-  PetscErrorCode (*stop_requested)(void *context, PetscBool *stop); /* NULL: nobody stops anything */
+  PetscErrorCode (*notify)(void *context, const char *text); /* a line of text for the user; NULL: not reported */
+  PetscErrorCode (*stop_requested)(void *context, PetscBool *stop); /* NULL: never */
   void *context;                                                    /* of both */
 };
 
-/* A problem on `domain`, which it takes over, without landmarks. Collective. */
+/* A problem on `domain`, which it owns from then on, without landmarks. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemCreate(EqmDomain domain, const EqmObjective *objective, EqmProblem *problem);
 PETSC_INTERN PetscErrorCode EqmProblemDestroy(EqmProblem *problem);
-/* Tell whoever listens a line of news, which ends in a newline. Collective. */
+/* Report a line of text, which ends in a newline, to the user. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemNotify(EqmProblem problem, const char *format, ...);
-/* Has somebody asked that the run stop? Collective. */
+/* Has a stop of the run been requested? Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemStopRequested(EqmProblem problem, PetscBool *stop);
 /* Cotangent weights of the mesh, 3 per local cell; made at the first need and kept. A start may have lowered those of
    limb tips (EqmSphereResolved). Collective. */

@@ -1,5 +1,6 @@
 /* The map h of the target to itself: a rotation, a flow, and the minimisation that makes the landmarks meet. */
 #include "register/registration.h"
+#include "mesh/gather.h"
 #include "mesh/mesh_private.h"
 #include "register/closest.h"
 #include "register/landmark_flow.h"
@@ -14,7 +15,7 @@ PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r)
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(dim * num, &place));
-  PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, dim, r->a.x, place));
+  PetscCall(EqmMeshGatherVertices(r->a.mesh, num, r->landmarks.vertex, dim, r->a.x, place, NULL));
   for (PetscInt k = 0; k < dim * dim * num; k++) {
     const PetscInt p = k / (dim * dim), i = k / dim % dim, j = k % dim;
     correlation[dim * i + j] += r->goal[dim * p + i] * place[dim * p + j];
@@ -25,7 +26,7 @@ PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* Minimise the area energy of h o f with the landmarks drawn to `goal`, from the present places. Collective. */
+/* Minimise the area energy of h o f plus the landmark term for `goal`, from the present map. Collective. */
 static PetscErrorCode MinimiseOnce(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal,
                                    PetscReal weight, PetscBool *reached)
 {
@@ -64,7 +65,7 @@ static PetscErrorCode Minimise(EqmRegistration r, EqmSide *side, const PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* How many cells are folded, with places `x`. */
+/* Number of folded cells of the map with coordinates `x`. */
 static PetscErrorCode CountFolds(EqmRegistration r, const EqmSide *side, const PetscReal *x, PetscInt64 *folds)
 {
   PetscInt64 local = 0;
@@ -80,7 +81,8 @@ static PetscErrorCode CountFolds(EqmRegistration r, const EqmSide *side, const P
   PetscFunctionReturn(0);
 }
 
-/* Let the flow bring the landmarks near; where it folds a triangle that is too coarse for it, the places stay. */
+/* Move the landmarks towards their goals by the flow; if that adds folds, as in coarse triangles, the map is kept as it
+   was. */
 static PetscErrorCode Flow(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal)
 {
   const PetscInt length = r->dim * side->mesh->num_local;
@@ -89,7 +91,7 @@ static PetscErrorCode Flow(EqmRegistration r, EqmSide *side, const PetscInt *ver
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(r->dim * r->landmarks.num, &from, length, &moved));
-  PetscCall(EqmSideGather(side, r->landmarks.num, vertices, r->dim, side->x, from));
+  PetscCall(EqmMeshGatherVertices(side->mesh, r->landmarks.num, vertices, r->dim, side->x, from, NULL));
   PetscCall(PetscArraycpy(moved, side->x, length));
   PetscCall(EqmLandmarkFlow(r->dim, r->set.reach, r->landmarks.num, from, goal, side->mesh->num_local, moved,
                             &r->figures.start_left));
@@ -112,7 +114,7 @@ static PetscErrorCode Move(EqmRegistration r, EqmSide *side, const PetscInt *ver
   PetscFunctionReturn(0);
 }
 
-/* 001 section 6.6: both maps go half the way, to the middles between the landmarks. */
+/* 001 section 6.6: both maps are moved half the way, to the midpoints between the landmarks. */
 static PetscErrorCode MoveToMiddles(EqmRegistration r)
 {
   const PetscInt num = r->landmarks.num, dim = r->dim;
@@ -121,7 +123,7 @@ static PetscErrorCode MoveToMiddles(EqmRegistration r)
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(dim * num, &middle, num, &of_b));
-  PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, dim, r->a.x, middle));
+  PetscCall(EqmMeshGatherVertices(r->a.mesh, num, r->landmarks.vertex, dim, r->a.x, middle, NULL));
   for (PetscInt i = 0; i < num; i++) {
     PetscReal squared = 0., length;
     of_b[i] = (PetscInt)r->landmarks.other[i];
@@ -142,7 +144,7 @@ static PetscErrorCode MoveToMiddles(EqmRegistration r)
 PetscErrorCode EqmAdapt(EqmRegistration r)
 {
   PetscFunctionBegin;
-  if (r->kind == EQM_IMAGE_SPACE) /* 003: the maps of solids are unique up to rotation, nothing is left to move */
+  if (r->kind == EQM_IMAGE_SPACE) /* 003: the maps of solids are unique up to rotation, so there is no h beyond that */
     PetscFunctionReturn(0);
   if (r->set.by == EQM_BY_MIDPOINTS)
     PetscCall(MoveToMiddles(r));

@@ -5,7 +5,8 @@
 #include <math.h>
 
 enum { COARSE = 300, FINE = 1500, TRIALS = 300, ANGLES = 180, REFINED = 4, FEW_STEPS = 6, MOST_STEPS = 40 };
-/* A pose this good, root mean square in radii, needs no search; a search must better it by this factor. */
+/* If the pose's residual, root mean square in radii, is below `good_enough` there is no search; the result of a search
+   must be smaller by the factor `better_by`. */
 static const PetscReal good_enough = 1e-3, better_by = .5;
 
 /* The rotation by a vector of angles, times the one before: product = exp(angles) rotation. */
@@ -56,7 +57,7 @@ static PetscErrorCode FindStep(const EqmSample *s, const PetscReal *rotation, co
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2 * n * length, &about));
-  for (PetscInt k = 0; k < 2 * n; k++) { /* there and back along each angle */
+  for (PetscInt k = 0; k < 2 * n; k++) { /* central differences in each angle */
     PetscReal angles[3] = {0., 0., 0.};
     angles[k / 2] = k % 2 ? -delta : delta;
     TurnBy(s->dim, angles, rotation, turned + size * k);
@@ -81,7 +82,7 @@ static PetscErrorCode FindStep(const EqmSample *s, const PetscReal *rotation, co
   PetscFunctionReturn(0);
 }
 
-/* The longest of the step, its half, its quarter, ... that makes the squares less; all are tried at once. `step` zero
+/* The longest of the step, its half, its quarter, ... that reduces the sum of squares, evaluated together. `step` zero
    if none does. */
 static PetscErrorCode ShortenStep(const EqmSample *s, PetscReal *rotation, PetscReal *residual, PetscReal *squares,
                                   PetscReal step[3])
@@ -214,7 +215,7 @@ static PetscErrorCode Pose(EqmRegistration r, PetscReal *rotation)
   PetscFunctionReturn(0);
 }
 
-/* The pose where it is as good as a search, else what the search finds. */
+/* The pose if its residual is small, else the better of pose and search. */
 static PetscErrorCode Choose(EqmRegistration r, PetscReal *rotation)
 {
   const PetscBool planar = (PetscBool)(r->dim == 2);

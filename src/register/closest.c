@@ -2,7 +2,7 @@
 #include "register/closest.h"
 #include "geometry/simplex.h"
 
-/* Where the foot of y on the segment from a to b lies, 0 ... 1. */
+/* Parameter in [0, 1] of the closest point to y on the segment from a to b. */
 static PetscReal AlongSegment(const PetscReal y[3], const PetscReal *a, const PetscReal *b)
 {
   const PetscReal ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, ay[3] = {y[0] - a[0], y[1] - a[1], y[2] - a[2]};
@@ -24,7 +24,7 @@ static PetscReal SquaredDistance(const PetscReal y[3], PetscInt n, const PetscRe
   return sum;
 }
 
-/* The foot of y on the triangle's plane if it lies within, else the best of the three sides. */
+/* The orthogonal projection of y if it lies in the triangle, else the closest point of the three sides. */
 PetscReal EqmClosestOnTriangle(const PetscReal y[3], const PetscReal *a, const PetscReal *b, const PetscReal *c,
                                PetscReal barycentric[3])
 {
@@ -83,8 +83,8 @@ static PetscReal InPlane(const PetscReal y[3], const PetscReal *const corner[4],
   return EqmClosestOnTriangle(y, in_space[0], in_space[1], in_space[2], barycentric);
 }
 
-/* The flat triangle is seen from the centre: y is a positive combination of its corners, with determinants for
-   coordinates. A point outside goes to the closest one of the flat triangle, seen from the centre again. */
+/* Central projection onto the flat triangle: y is a positive combination of its corners, with determinants as
+   coordinates. A point outside goes to the closest point of the flat triangle, projected again. */
 static PetscReal OnSphere(const PetscReal y[3], const PetscReal *const corner[4], PetscReal barycentric[4])
 {
   const PetscReal det = EqmHalfDet(corner[0], corner[1], corner[2]);

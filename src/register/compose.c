@@ -1,4 +1,4 @@
-/* phi = g^-1 o h o f and its inverse by point location, and what they are worth. */
+/* phi = g^-1 o h o f and its inverse by point location, and their figures. */
 #include "register/registration.h"
 #include "mesh/mesh_private.h"
 #include "geometry/rotation.h"
@@ -20,7 +20,7 @@ static PetscErrorCode Carry(EqmRegistration r, const EqmSide *from, const EqmSid
   PetscFunctionReturn(0);
 }
 
-/* With the target itself for B the places are the points. */
+/* If B is the target itself, the images are the points. */
 static PetscErrorCode TakePlaces(EqmRegistration r)
 {
   const EqmMesh mesh = r->a.mesh;
@@ -33,7 +33,7 @@ static PetscErrorCode TakePlaces(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* Locations, points, and the map of A that holds them: of the mended mesh if there is one. Collective. */
+/* Locations, points, and the map of A that holds them: of the repaired mesh if there is one. Collective. */
 PetscErrorCode EqmCompose(EqmRegistration r)
 {
   const EqmSoup soup = r->a.intake.mapped;
@@ -44,7 +44,7 @@ PetscErrorCode EqmCompose(EqmRegistration r)
     PetscCall(TakePlaces(r));
   } else {
     PetscCall(Carry(r, &r->a, &r->b, &r->forward, &r->image));
-    PetscCall(EqmPause(r, PETSC_TRUE));
+    PetscCall(EqmRegistrationCheckStop(r, PETSC_TRUE));
     if (r->status != EQM_STATUS_STOPPED) PetscCall(Carry(r, &r->b, &r->a, &r->inverse, &r->inverse_image));
   }
   PetscCall(EqmMapCreate(soup, 3, &r->found));

@@ -1,4 +1,4 @@
-/* Where fields come from: the mesh itself, its HDF5 file, a CSV file. */
+/* Read fields: from the mesh itself, its HDF5 file, or a CSV file. */
 #include "register/field.h"
 #include "mesh/mesh_private.h"
 #include "format/table.h"
@@ -22,7 +22,8 @@ static void NameField(const char *source, EqmCarriedField *field)
   }
 }
 
-/* Vertices or cells? A path that says so decides where both are as many. */
+/* Is the field on vertices or cells? By the number of rows; if vertices and cells are equally many, by the dataset's
+   path. */
 static PetscErrorCode Recognise(EqmSoup soup, const char *source, PetscInt64 rows, EqmCarriedField *field)
 {
   PetscFunctionBegin;
@@ -74,7 +75,7 @@ static PetscErrorCode ReadDataset(EqmSoup soup, const char *path, EqmCarriedFiel
   PetscFunctionReturn(0);
 }
 
-/* Rank 0 has the rows and deals them. */
+/* Rank 0 has the rows and distributes them. */
 static PetscErrorCode ReadCsv(EqmSoup soup, const char *file, EqmCarriedField *field)
 {
   PetscInt start, count, *rows;

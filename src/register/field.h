@@ -6,7 +6,7 @@
 
 typedef struct {
   char name[64];  /* for the result's arrays */
-  PetscBool of_b; /* goes from B to A */
+  PetscBool of_b; /* transferred from B to A */
   PetscBool on_cells;
   PetscInt width;
   PetscReal *slab; /* width per vertex or cell of the soup's slab */

@@ -16,7 +16,7 @@ static void Blend(PetscInt length, PetscReal t, const PetscReal *from, const Pet
   for (PetscInt k = 0; k < length; k++) x[k] = (1. - t) * from[k] + t * to[k];
 }
 
-/* Tetrahedra that are flat or turned inside out. */
+/* Number of tetrahedra that are flat or inverted. */
 static PetscInt64 TurnedTetrahedra(EqmMesh mesh, const PetscReal *x)
 {
   PetscInt64 turned = 0;
@@ -40,7 +40,8 @@ static void NormalOf(EqmMesh mesh, const PetscReal *x, PetscInt cell, PetscReal 
   EqmCross(u, w, normal);
 }
 
-/* Triangles that are flat or look away from the surface around them: against the sum of the normals at their corners.
+/* Number of triangles that are flat or oriented against the surface around them, which is the sum of the normals at
+   their corners.
  */
 static PetscErrorCode TurnedTriangles(EqmMesh mesh, const PetscReal *x, PetscInt64 *turned)
 {

@@ -1,6 +1,7 @@
-/* Where landmarks should go: from vertices of B, points of B's surface or points of the target to places of the target.
+/* Goals of landmarks in the target: from vertices of B, points of B's surface or points of the target.
  */
 #include "register/registration.h"
+#include "mesh/gather.h"
 #include "mesh/mesh_private.h"
 
 /* Do all points lie on the unit sphere (in the unit disk)? */
@@ -18,7 +19,7 @@ static PetscBool LieInTarget(const EqmRegistration r)
   return PETSC_TRUE;
 }
 
-/* Points of the target are taken to it exactly: onto the sphere, into the disk. */
+/* Points of the target are projected onto the sphere, or into the disk. */
 static void TakeTargetPoints(EqmRegistration r)
 {
   const EqmLandmarkList *const list = &r->landmarks;
@@ -33,7 +34,7 @@ static void TakeTargetPoints(EqmRegistration r)
   }
 }
 
-/* Points in space go to the closest point of B, and with it to its place in the target. Rank 0 asks. */
+/* The goal of a point in space is the image of the closest point of B. Rank 0 sends the queries. */
 static PetscErrorCode TakeSurfacePoints(EqmRegistration r)
 {
   const EqmLandmarkList *const list = &r->landmarks;
@@ -65,7 +66,7 @@ static PetscBool AreOfTarget(EqmRegistration r)
                      (r->set.points == EQM_POINTS_AUTO && (r->bare || LieInTarget(r))));
 }
 
-/* Boundaries go to boundaries, whatever the weight. */
+/* Boundary vertices must correspond to boundary vertices, which no weight can change. */
 static PetscErrorCode CheckBoundaries(EqmRegistration r, const PetscInt *inside_a, const PetscInt *vertices_b,
                                       const PetscInt *inside_b)
 {
@@ -130,7 +131,7 @@ PetscErrorCode EqmFindGoals(EqmRegistration r)
   if (list->width == 1) {
     PetscInt *vertices;
     PetscCall(VerticesOfB(r, &vertices));
-    PetscCall(EqmSideGather(&r->b, list->num, vertices, r->dim, r->b.x, r->goal));
+    PetscCall(EqmMeshGatherVertices(r->b.mesh, list->num, vertices, r->dim, r->b.x, r->goal, NULL));
     PetscCall(PetscFree(vertices));
   } else if (AreOfTarget(r)) {
     if (!r->set.quiet && !r->bare)
@@ -142,7 +143,7 @@ PetscErrorCode EqmFindGoals(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* Where the landmarks of B are, by `values` per vertex of B, `width` each. */
+/* Interpolate `values` per vertex of B, `width` each, at the landmarks of B. */
 static PetscErrorCode GatherOnB(EqmRegistration r, PetscInt width, const PetscReal *values, PetscReal *gathered)
 {
   PetscInt *vertices;
@@ -154,7 +155,7 @@ static PetscErrorCode GatherOnB(EqmRegistration r, PetscInt width, const PetscRe
     PetscFunctionReturn(0);
   }
   PetscCall(VerticesOfB(r, &vertices));
-  PetscCall(EqmSideGather(&r->b, r->landmarks.num, vertices, width, values, gathered));
+  PetscCall(EqmMeshGatherVertices(r->b.mesh, r->landmarks.num, vertices, width, values, gathered, NULL));
   PetscCall(PetscFree(vertices));
   PetscFunctionReturn(0);
 }
@@ -182,13 +183,13 @@ PetscErrorCode EqmLandmarkErrors(EqmRegistration r)
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(3 * num, &p, 3 * num, &q));
-  PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, r->dim, r->a.x, p));
+  PetscCall(EqmMeshGatherVertices(r->a.mesh, num, r->landmarks.vertex, r->dim, r->a.x, p, NULL));
   PetscCall(PetscArraycpy(q, r->goal, r->dim * num));
   if (on_b) PetscCall(GatherOnB(r, r->dim, r->b.x, q)); /* B may have moved */
   MeanAndMax(num, r->dim, p, q, 1., &f->landmark_mean, &f->landmark_max);
   f->landmarks_in_space = on_b;
   if (on_b) {
-    PetscCall(EqmSideGather(&r->a, num, r->landmarks.vertex, 3, r->image, p));
+    PetscCall(EqmMeshGatherVertices(r->a.mesh, num, r->landmarks.vertex, 3, r->image, p, NULL));
     PetscCall(GatherOnB(r, 3, r->b.mesh->position, q));
     MeanAndMax(num, 3, p, q, EqmSideRadius(r, &r->b), &f->landmark_space_mean, &f->landmark_space_max);
   }

@@ -2,7 +2,7 @@
    the sphere, has no divergence: its flow keeps areas. Of all stream functions with the wanted velocities at the
    landmarks the one of least norm is taken, in the space of a smooth kernel k; it is a combination of the kernel's
    derivatives at the landmarks. In the disk k carries the factors 1 - |x|^2, so that psi is constant along the circle
-   and nothing leaves. */
+   and the flow keeps the disk. */
 #include "register/landmark_flow.h"
 #include "geometry/simplex.h"
 #include <petscmat.h>
@@ -14,7 +14,7 @@ typedef struct {
   PetscBool disk;
   PetscReal reach;
   PetscInt num;
-  PetscReal *landmark; /* 3 each: where they are at the beginning of the step */
+  PetscReal *landmark; /* 3 each: positions at the beginning of the step */
   PetscReal *momentum; /* 3 each: psi = sum momentum_j . grad_y k(x, y_j) */
 } Flow;
 
@@ -26,19 +26,19 @@ static void MixedDerivative(const Flow *flow, const PetscReal x[3], const PetscR
   const PetscReal z = PetscSqrtReal(EqmDot3(d, d)) / flow->reach, e = PetscExpReal(-z);
   const PetscReal value = (1. + z * (1. + z * (.4 + z / 15.))) * e;
   const PetscReal slope = -(1. + z * (1. + z / 3.)) * e / (5. * square); /* kappa' / r */
-  const PetscReal bend = (1. + z) * e / (15. * square * square);         /* slope' / r */
+  const PetscReal second_slope = (1. + z) * e / (15. * square * square); /* slope' / r */
   const PetscReal bx = flow->disk ? 1. - EqmDot3(x, x) : 1., by = flow->disk ? 1. - EqmDot3(y, y) : 1.;
   const PetscReal of_b = flow->disk ? -2. : 0.; /* grad b = of_b x */
 
   for (PetscInt i = 0; i < 3; i++) {
     for (PetscInt j = 0; j < 3; j++) {
-      m[i][j] = bx * by * ((i == j ? -slope : 0.) - bend * d[i] * d[j]) + of_b * of_b * x[i] * y[j] * value +
+      m[i][j] = bx * by * ((i == j ? -slope : 0.) - second_slope * d[i] * d[j]) + of_b * of_b * x[i] * y[j] * value +
                 of_b * slope * (bx * d[i] * y[j] - by * x[i] * d[j]);
     }
   }
 }
 
-/* n x g at a place. */
+/* n x g at a point. */
 static void Turn(const Flow *flow, const PetscReal x[3], const PetscReal g[3], PetscReal turned[3])
 {
   const PetscReal up[3] = {0., 0., 1.};
@@ -58,7 +58,7 @@ static void Velocity(const Flow *flow, const PetscReal x[3], PetscReal v[3])
   Turn(flow, x, gradient, v);
 }
 
-/* Back to where points live: the sphere, the plane, and in it the closed disk. */
+/* Project back to the sphere, or to the closed disk in the plane. */
 static void Settle(const Flow *flow, PetscBool on_circle, PetscReal x[3])
 {
   const PetscReal length = PetscSqrtReal(EqmDot3(x, x));
@@ -179,7 +179,7 @@ static PetscErrorCode FindMomenta(Flow *flow, const PetscReal *to, PetscReal rem
   PetscFunctionReturn(0);
 }
 
-/* One step for all points and the landmarks, whose places at its beginning stay the kernel's centres. */
+/* One step for all points and the landmarks, whose positions at its beginning are the kernel's centres throughout. */
 static PetscErrorCode Step(Flow *flow, const PetscReal *to, PetscReal remaining, PetscReal dt, PetscInt dim,
                            PetscInt count, PetscReal *x)
 {

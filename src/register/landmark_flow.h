@@ -5,8 +5,8 @@
 #include <petscsys.h>
 
 /* Carry `count` points of the disk (dim 2) or the sphere (dim 3) along a smooth flow that preserves area and brings the
-   landmarks, now at `from`, to `to` (`num` each, the same on every rank). `reach`: how far a landmark's pull reaches,
-   in radii of the target. `left`: the largest distance that remains. Not collective. */
+   landmarks, now at `from`, to `to` (`num` each, the same on every rank). `reach`: length scale of the kernel, in radii
+   of the target. `left`: the largest distance that remains. Not collective. */
 PETSC_INTERN PetscErrorCode EqmLandmarkFlow(PetscInt dim, PetscReal reach, PetscInt num, const PetscReal *from,
                                             const PetscReal *to, PetscInt count, PetscReal *x, PetscReal *left);
 

@@ -1,12 +1,12 @@
-/* Distributed point location: questions go to the ranks whose cells may hold the point, answers come back; what lies
-   outside all cells is asked again from every rank that could be closer. */
+/* Distributed point location: queries go to the ranks whose cells may hold the point, results come back; points outside
+   all cells are sent once more to every rank that could have a closer cell. */
 #include "register/tree.h"
 #include "mesh/mesh_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 #include <math.h>
 
-/* A rank is known to the others by so many boxes. */
+/* Number of boxes by which the other ranks know the extent of a rank's cells. */
 enum { OUTLINE_LEVELS = 3, OUTLINE = 1 << OUTLINE_LEVELS };
 
 struct _p_EqmLocator {
@@ -17,18 +17,18 @@ struct _p_EqmLocator {
 };
 
 typedef struct {
-  PetscReal point[3], squared; /* what was found already: only better answers are of interest */
+  PetscReal point[3], squared; /* squared distance found so far: only closer cells are returned */
   PetscInt query, label;
   PetscMPIInt rank;
-} Question;
+} Query;
 
 typedef struct {
   EqmHit hit;
   PetscInt query;
   PetscMPIInt rank; /* of the cell */
-} Answer;
+} Result;
 
-/* Tell all ranks where this one's cells are. */
+/* Gather the outlines of all ranks: boxes around their cells. */
 static PetscErrorCode ShareOutline(EqmLocator locator)
 {
   const EqmTree *const tree = &locator->tree;
@@ -105,10 +105,10 @@ static PetscMPIInt ClosestRank(EqmLocator locator, const PetscReal y[3])
   return closest;
 }
 
-/* Is rank p asked about a point? In the first round those whose outline holds it, else the closest; in the second all
-   others that could be closer than what was found. */
-static PetscBool IsAsked(EqmLocator locator, PetscMPIInt p, PetscBool second, const PetscReal y[3], PetscMPIInt closest,
-                         PetscReal squared)
+/* Does rank p get the query of a point? In the first round ranks whose outline holds it, else the closest rank; in the
+   second all others that could have a closer cell. */
+static PetscBool GetsQuery(EqmLocator locator, PetscMPIInt p, PetscBool second, const PetscReal y[3],
+                           PetscMPIInt closest, PetscReal squared)
 {
   const PetscReal distance = OutlineDistance(locator, p, y);
   const PetscBool before = (PetscBool)(distance == 0. || p == closest);
@@ -116,30 +116,30 @@ static PetscBool IsAsked(EqmLocator locator, PetscMPIInt p, PetscBool second, co
   return (PetscBool)(second ? !before && distance <= squared : before);
 }
 
-/* The questions of one round. */
-static PetscErrorCode Compose(EqmLocator locator, PetscBool second, PetscInt num, const PetscReal *points,
-                              const Answer *found, PetscInt *count, Question **questions, PetscMPIInt **destination)
+/* The queries of one round. */
+static PetscErrorCode CollectQueries(EqmLocator locator, PetscBool second, PetscInt num, const PetscReal *points,
+                                     const Result *found, PetscInt *count, Query **queries, PetscMPIInt **destination)
 {
   PetscInt most = PetscMax(16, 2 * num), n = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc(sizeof(Question) * (size_t)most, questions));
+  PetscCall(PetscMalloc(sizeof(Query) * (size_t)most, queries));
   PetscCall(PetscMalloc(sizeof(PetscMPIInt) * (size_t)most, destination));
   for (PetscInt i = 0; i < num; i++) {
-    Question question = {.squared = found[i].hit.squared, .query = i, .label = found[i].hit.label};
+    Query query = {.squared = found[i].hit.squared, .query = i, .label = found[i].hit.label};
     PetscMPIInt closest;
     if (second && found[i].hit.squared == 0.) continue;
-    for (PetscInt k = 0; k < locator->dim; k++) question.point[k] = points[locator->dim * i + k];
-    question.rank = locator->mesh->rank;
-    closest = ClosestRank(locator, question.point);
+    for (PetscInt k = 0; k < locator->dim; k++) query.point[k] = points[locator->dim * i + k];
+    query.rank = locator->mesh->rank;
+    closest = ClosestRank(locator, query.point);
     for (PetscMPIInt p = 0; p < locator->mesh->size; p++) {
-      if (!IsAsked(locator, p, second, question.point, closest, question.squared)) continue;
+      if (!GetsQuery(locator, p, second, query.point, closest, query.squared)) continue;
       if (n == most) {
         most *= 2;
-        PetscCall(PetscRealloc(sizeof(Question) * (size_t)most, questions));
+        PetscCall(PetscRealloc(sizeof(Query) * (size_t)most, queries));
         PetscCall(PetscRealloc(sizeof(PetscMPIInt) * (size_t)most, destination));
       }
-      (*questions)[n] = question;
+      (*queries)[n] = query;
       (*destination)[n++] = p;
     }
   }
@@ -147,34 +147,35 @@ static PetscErrorCode Compose(EqmLocator locator, PetscBool second, PetscInt num
   PetscFunctionReturn(0);
 }
 
-/* One round: ask, let every rank look, take the better answers. */
-static PetscErrorCode Ask(EqmLocator locator, PetscBool second, PetscInt num, const PetscReal *points, Answer *found)
+/* One round: exchange queries, search the trees, keep the closest results. */
+static PetscErrorCode ExchangeQueries(EqmLocator locator, PetscBool second, PetscInt num, const PetscReal *points,
+                                      Result *found)
 {
   MPI_Comm comm = locator->mesh->comm;
-  PetscInt count, num_asked, num_answers;
-  Question *questions, *asked;
-  Answer *answers, *received;
+  PetscInt count, num_incoming, num_results;
+  Query *queries, *incoming;
+  Result *results, *received;
   PetscMPIInt *destination;
 
   PetscFunctionBegin;
-  PetscCall(Compose(locator, second, num, points, found, &count, &questions, &destination));
-  PetscCall(EqmExchangeBytes(comm, count, sizeof(Question), destination, questions, &num_asked, &asked));
-  PetscCall(PetscFree(questions));
+  PetscCall(CollectQueries(locator, second, num, points, found, &count, &queries, &destination));
+  PetscCall(EqmExchangeBytes(comm, count, sizeof(Query), destination, queries, &num_incoming, &incoming));
+  PetscCall(PetscFree(queries));
   PetscCall(PetscFree(destination));
-  PetscCall(PetscMalloc2(num_asked, &answers, num_asked, &destination));
+  PetscCall(PetscMalloc2(num_incoming, &results, num_incoming, &destination));
 #pragma omp parallel for schedule(dynamic, 256)
-  for (PetscInt k = 0; k < num_asked; k++) {
-    Answer answer = {.hit = {.cell = -1, .label = asked[k].label, .squared = asked[k].squared},
-                     .query = asked[k].query,
+  for (PetscInt k = 0; k < num_incoming; k++) {
+    Result result = {.hit = {.cell = -1, .label = incoming[k].label, .squared = incoming[k].squared},
+                     .query = incoming[k].query,
                      .rank = locator->mesh->rank};
-    EqmTreeFind(&locator->tree, asked[k].point, &answer.hit);
-    answers[k] = answer;
-    destination[k] = asked[k].rank;
+    EqmTreeFind(&locator->tree, incoming[k].point, &result.hit);
+    results[k] = result;
+    destination[k] = incoming[k].rank;
   }
-  PetscCall(EqmExchangeBytes(comm, num_asked, sizeof(Answer), destination, answers, &num_answers, &received));
-  PetscCall(PetscFree2(answers, destination));
-  PetscCall(PetscFree(asked));
-  for (PetscInt k = 0; k < num_answers; k++) {
+  PetscCall(EqmExchangeBytes(comm, num_incoming, sizeof(Result), destination, results, &num_results, &received));
+  PetscCall(PetscFree2(results, destination));
+  PetscCall(PetscFree(incoming));
+  for (PetscInt k = 0; k < num_results; k++) {
     const EqmHit *const hit = &received[k].hit, *const best = &found[received[k].query].hit;
     if (hit->cell >= 0 && (hit->squared < best->squared || (hit->squared == best->squared && hit->label < best->label)))
       found[received[k].query] = received[k];
@@ -183,8 +184,8 @@ static PetscErrorCode Ask(EqmLocator locator, PetscBool second, PetscInt num, co
   PetscFunctionReturn(0);
 }
 
-/* From answers to the object that interpolates. */
-static PetscErrorCode TakeAnswers(EqmLocator locator, PetscInt num, const Answer *found, EqmLocation *out)
+/* From results to the location object. */
+static PetscErrorCode CreateLocation(EqmLocator locator, PetscInt num, const Result *found, EqmLocation *out)
 {
   const EqmMesh mesh = locator->mesh;
   PetscSFNode *remote;
@@ -223,15 +224,15 @@ static PetscErrorCode TakeAnswers(EqmLocator locator, PetscInt num, const Answer
 
 PetscErrorCode EqmLocatorFind(EqmLocator locator, PetscInt num, const PetscReal *points, EqmLocation *location)
 {
-  Answer *found;
+  Result *found;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(num, &found));
   for (PetscInt i = 0; i < num; i++)
     found[i].hit = (EqmHit){.cell = -1, .label = PETSC_MAX_INT, .squared = PETSC_MAX_REAL};
-  PetscCall(Ask(locator, PETSC_FALSE, num, points, found));
-  PetscCall(Ask(locator, PETSC_TRUE, num, points, found));
-  PetscCall(TakeAnswers(locator, num, found, location));
+  PetscCall(ExchangeQueries(locator, PETSC_FALSE, num, points, found));
+  PetscCall(ExchangeQueries(locator, PETSC_TRUE, num, points, found));
+  PetscCall(CreateLocation(locator, num, found, location));
   PetscCall(PetscFree(found));
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,4 @@
-/* From a mended mesh back to the mesh of the file, and the other way. */
+/* From a repaired mesh to the mesh of the file and back. */
 #include "register/origin.h"
 #include "mesh/mesh_private.h"
 #include "base/rows.h"
@@ -14,8 +14,8 @@ static PetscInt CellsOf(EqmSoup soup)
   return soup->cell_end - soup->cell_start;
 }
 
-/* Barycentric coordinates in its parent of a corner that is new: the parent's centre or the middle of one of its edges,
-   whichever is where it is. */
+/* Barycentric coordinates in its parent of a corner that is new: the parent's centroid or the midpoint of one of its
+   edges, by its position. */
 static void ShareOfNew(PetscInt cs, const PetscReal *parent, const PetscReal *corner, PetscReal *share)
 {
   PetscReal closest = INFINITY;
@@ -36,7 +36,7 @@ static void ShareOfNew(PetscInt cs, const PetscReal *parent, const PetscReal *co
   }
 }
 
-/* Input numbers of the vertices of local cells, in the mended numbering. */
+/* Input numbers of the vertices of local cells, in the repaired mesh's numbering. */
 static PetscErrorCode NumberCorners(EqmMesh mesh, PetscInt *corner)
 {
   PetscInt *input;
@@ -51,7 +51,7 @@ static PetscErrorCode NumberCorners(EqmMesh mesh, PetscInt *corner)
   PetscFunctionReturn(0);
 }
 
-/* Shares of corners that the file knows: all of one of its vertices. `fresh`, if not NULL, gets the cells that have
+/* Barycentric coordinates of corners that are vertices of the file. `fresh`, if not NULL, gets the cells that have
    others. */
 static PetscInt TakeKnownCorners(EqmOrigin o, const PetscInt *corner, const PetscInt *parent_corner, PetscInt *fresh)
 {
@@ -70,7 +70,7 @@ static PetscInt TakeKnownCorners(EqmOrigin o, const PetscInt *corner, const Pets
   return num_fresh;
 }
 
-/* Shares of the new corners, of the cells that have some: these ask where their parents' vertices are. */
+/* Barycentric coordinates of the new corners: for these cells the positions of the parents' vertices are fetched. */
 static PetscErrorCode TakeNewCorners(EqmOrigin o, const PetscInt *corner, const PetscInt *parent_corner,
                                      PetscInt num_fresh, const PetscInt *fresh)
 {
@@ -93,7 +93,7 @@ static PetscErrorCode TakeNewCorners(EqmOrigin o, const PetscInt *corner, const 
   PetscFunctionReturn(0);
 }
 
-/* Of what each owned vertex is made, as any of the cells around it says. */
+/* Vertices and coordinates of which each owned vertex is a combination, from any of the cells around it. */
 static void TakeSources(EqmOrigin o, const PetscInt *parent_corner)
 {
   const EqmMesh mesh = o->mesh;
@@ -206,7 +206,7 @@ PetscErrorCode EqmCellsFromOrigin(EqmOrigin o, PetscInt width, const PetscReal *
   PetscFunctionReturn(0);
 }
 
-/* Is an owned cell the first part of its parent? The parts of a cell stand together in the mended mesh. */
+/* Is an owned cell the first part of its parent? The parts of a cell are consecutive in the repaired mesh. */
 static PetscErrorCode FindFirstParts(EqmOrigin o, PetscBool *is_first)
 {
   const EqmSoup mapped = o->intake->mapped;

@@ -1,4 +1,4 @@
-/* Where the vertices and cells of a mended mesh come from: the mesh that the file holds, in whose numbers users speak.
+/* The origin of the vertices and cells of a repaired mesh in the mesh of the file, whose numbering the results have.
  */
 #ifndef EQM_ORIGIN_H
 #define EQM_ORIGIN_H
@@ -11,10 +11,10 @@ typedef struct _p_EqmOrigin *EqmOrigin;
 struct _p_EqmOrigin {
   const EqmIntake *intake; /* referenced */
   EqmMesh mesh;            /* referenced */
-  PetscInt *parent;        /* per local cell: the file's cell; NULL where nothing was mended, and all below */
+  PetscInt *parent;        /* per local cell: the file's cell; NULL, as all below, where nothing was repaired */
   PetscReal *share;        /* per local cell, cell_size^2: per corner its barycentric coordinates in the parent */
-  PetscInt *source;        /* per owned vertex, cell_size: vertices of the file's mesh of which it is made */
-  PetscReal *part;         /* and how much of each: one of itself, but of new vertices */
+  PetscInt *source;        /* per owned vertex, cell_size: vertices of the file's mesh of which it is a combination */
+  PetscReal *part;         /* and the coefficients: 1 for itself, except of new vertices */
 };
 
 PETSC_INTERN PetscErrorCode EqmOriginCreate(const EqmIntake *intake, EqmMesh mesh, EqmOrigin *origin);

@@ -19,7 +19,7 @@ static PetscErrorCode AddReals(EqmRegistration r, const EqmSide *side, const cha
   PetscFunctionReturn(0);
 }
 
-/* Numbers of cells; they travel as reals, which hold them exactly. */
+/* Numbers of cells, sent as reals, which represent them exactly. */
 static PetscErrorCode AddCells(EqmRegistration r, const EqmSide *side, const char *path, const PetscInt *owned)
 {
   const EqmSoup soup = side->soup;
@@ -133,7 +133,7 @@ static PetscErrorCode AddMeshOfB(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* Figures of B, and of how alike the two are. */
+/* Figures of B, and the dissimilarity. */
 static PetscErrorCode AddFiguresOfB(EqmRegistration r)
 {
   const EqmRegisterFigures *const f = &r->figures;

@@ -1,4 +1,4 @@
-/* The registration as an object: the way from two files to a correspondence, the figures for people. */
+/* The registration object: from two files to a correspondence, and the printed figures. */
 #include "register/registration.h"
 #include "mesh/mesh_private.h"
 #include "solver/inner.h"
@@ -45,8 +45,8 @@ PetscErrorCode EqmRegistrationDestroy(EqmRegistration *registration)
   PetscFunctionReturn(0);
 }
 
-/* Is B the target itself? Where it is not named, the checkpoint says so. */
-static PetscErrorCode AskForTarget(EqmRegistration r, const char *file_b)
+/* Is B the target itself? If B is not named, the checkpoint has it. */
+static PetscErrorCode FindWhetherTarget(EqmRegistration r, const char *file_b)
 {
   char name[PETSC_MAX_PATH_LEN], entry[PETSC_MAX_PATH_LEN] = "";
   const char *restart;
@@ -58,7 +58,7 @@ static PetscErrorCode AskForTarget(EqmRegistration r, const char *file_b)
   PetscFunctionReturn(0);
 }
 
-/* The solid is only rotated; on a surface the method must draw landmarks together. */
+/* For solids there is only a rotation; on a surface the method must support landmarks. */
 static PetscErrorCode CheckMethod(EqmRegistration r)
 {
   EqmSolver solver;
@@ -72,7 +72,7 @@ static PetscErrorCode CheckMethod(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* What does not fit together is said before the long run, not after it. */
+/* Check the options against each other and the meshes before the run. */
 static PetscErrorCode CheckTogether(EqmRegistration r)
 {
   PetscFunctionBegin;
@@ -91,9 +91,9 @@ PetscErrorCode EqmRegistrationRead(EqmRegistration r, const char *file_a, const 
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(usage, sizeof(usage), "equimap register %s %s", file_a ? file_a : "", file_b ? file_b : ""));
-  PetscCall(AskForTarget(r, file_b));
+  PetscCall(FindWhetherTarget(r, file_b));
   PetscCall(EqmSideRead(r, &r->a, file_a, r->set.density_a, r->set.map_a, usage));
-  PetscCall(EqmPause(r, PETSC_FALSE));
+  PetscCall(EqmRegistrationCheckStop(r, PETSC_FALSE));
   if (r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
   if (!r->bare) PetscCall(EqmSideRead(r, &r->b, file_b, r->set.density_b, r->set.map_b, usage));
   if (r->set.has_landmarks)
@@ -104,15 +104,15 @@ PetscErrorCode EqmRegistrationRead(EqmRegistration r, const char *file_a, const 
   PetscFunctionReturn(0);
 }
 
-/* A map that did not converge, or that folds, is told about; what happened last counts most. */
-static void TakeStatus(EqmRegistration r, const EqmSide *side)
+/* The status of a map that did not converge or folds becomes the registration's, unless one is set already. */
+static void MergeStatus(EqmRegistration r, const EqmSide *side)
 {
   if (!side->map || r->status != EQM_STATUS_CONVERGED || side->map->status == EQM_STATUS_CONVERGED) return;
   r->status = side->map->status;
   (void)snprintf(r->message, sizeof(r->message), "map of %s: %.2000s", side->name, side->map->message);
 }
 
-/* How it went as a whole. */
+/* The status of the whole registration. */
 static PetscErrorCode Judge(EqmRegistration r)
 {
   const EqmRegisterFigures *const f = &r->figures;
@@ -120,8 +120,8 @@ static PetscErrorCode Judge(EqmRegistration r)
 
   PetscFunctionBegin;
   if (!r->message[0]) PetscCall(PetscStrncpy(r->message, "the maps are composed", sizeof(r->message)));
-  TakeStatus(r, &r->a);
-  TakeStatus(r, &r->b);
+  MergeStatus(r, &r->a);
+  MergeStatus(r, &r->b);
   if (r->landmarks.num && r->kind != EQM_IMAGE_SPACE && f->landmark_max > r->set.tolerance) {
     r->status = EQM_STATUS_NOT_CONVERGED;
     PetscCall(PetscSNPrintf(r->message, sizeof(r->message),
@@ -144,8 +144,8 @@ static PetscErrorCode Judge(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* What the result says of the run: history and work of the last minimisation for A. */
-static PetscErrorCode TakeRun(EqmRegistration r, EqmMap to)
+/* Copy history and work of the last minimisation for A to the result. */
+static PetscErrorCode CopyRun(EqmRegistration r, EqmMap to)
 {
   const EqmMap from = r->a.map;
   EqmWork *work;
@@ -171,7 +171,7 @@ static PetscErrorCode MapBoth(EqmRegistration r)
 {
   PetscFunctionBegin;
   PetscCall(EqmSideSolve(r, &r->a));
-  PetscCall(EqmPause(r, PETSC_FALSE)); /* the next minimisation looks at the clock itself */
+  PetscCall(EqmRegistrationCheckStop(r, PETSC_FALSE)); /* the next minimisation checks -wall_time itself */
   if (!r->bare) PetscCall(EqmSideSolve(r, &r->b));
   PetscFunctionReturn(0);
 }
@@ -180,7 +180,7 @@ static PetscErrorCode MapBoth(EqmRegistration r)
 static PetscErrorCode MoveOntoEachOther(EqmRegistration r)
 {
   PetscFunctionBegin;
-  PetscCall(EqmPause(r, PETSC_FALSE));
+  PetscCall(EqmRegistrationCheckStop(r, PETSC_FALSE));
   if (r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
   if (r->landmarks.num) {
     PetscCall(EqmFindGoals(r));
@@ -192,29 +192,29 @@ static PetscErrorCode MoveOntoEachOther(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* phi, and what it is worth. */
+/* phi and its figures. */
 static PetscErrorCode ComposeAndMeasure(EqmRegistration r)
 {
   PetscFunctionBegin;
-  PetscCall(EqmPause(r, PETSC_TRUE));
+  PetscCall(EqmRegistrationCheckStop(r, PETSC_TRUE));
   if (r->status != EQM_STATUS_STOPPED) PetscCall(EqmCompose(r));
-  PetscCall(EqmPause(r, PETSC_TRUE));
+  PetscCall(EqmRegistrationCheckStop(r, PETSC_TRUE));
   if (r->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
   PetscCall(EqmMeasureCorrespondence(r));
-  PetscCall(TakeRun(r, r->found));
+  PetscCall(CopyRun(r, r->found));
   PetscCall(EqmIntakeTakeMap(&r->a.intake, r->a.mesh, r->found, &r->map));
-  PetscCall(EqmPause(r, PETSC_TRUE));
+  PetscCall(EqmRegistrationCheckStop(r, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
-/* What a run that is to go on later tells of itself: the last minimisation for A. */
-static PetscErrorCode TakeStopped(EqmRegistration r)
+/* The summary of a run that is to be continued: the last minimisation for A. */
+static PetscErrorCode SummariseStopped(EqmRegistration r)
 {
   PetscFunctionBegin;
   if (!r->map) {
     PetscCall(EqmMapCreate(r->a.soup, r->dim, &r->map));
     if (r->a.map) r->figures.energy = r->a.map->distortion.energy;
-    if (r->a.map) PetscCall(TakeRun(r, r->map));
+    if (r->a.map) PetscCall(CopyRun(r, r->map));
     PetscCall(PetscStrncpy(r->map->command, "register", sizeof(r->map->command)));
   }
   r->map->status = r->status;
@@ -226,12 +226,12 @@ PetscErrorCode EqmRegistrationSolve(EqmRegistration r)
 {
   PetscFunctionBegin;
   if (r->status != EQM_STATUS_STOPPED) PetscCall(EqmKeepMeshes(r));
-  PetscCall(EqmPause(r, PETSC_FALSE));
+  PetscCall(EqmRegistrationCheckStop(r, PETSC_FALSE));
   if (r->status != EQM_STATUS_STOPPED) PetscCall(MapBoth(r));
   if (r->status != EQM_STATUS_STOPPED) PetscCall(MoveOntoEachOther(r));
   if (r->status != EQM_STATUS_STOPPED) PetscCall(ComposeAndMeasure(r));
   if (r->status == EQM_STATUS_STOPPED) {
-    PetscCall(TakeStopped(r));
+    PetscCall(SummariseStopped(r));
     PetscFunctionReturn(0);
   }
   PetscCall(Judge(r));
@@ -290,7 +290,7 @@ PetscErrorCode EqmRegistrationView(EqmRegistration r)
 
   PetscFunctionBegin;
   if (r->status == EQM_STATUS_STOPPED) {
-    if (!r->told) PetscCall(PetscPrintf(r->comm, "%s: %s\n", EqmStatusName(r->status), r->message));
+    if (!r->stop_reported) PetscCall(PetscPrintf(r->comm, "%s: %s\n", EqmStatusName(r->status), r->message));
     PetscFunctionReturn(0);
   }
   PetscCall(PetscPrintf(r->comm, "\n%s -> %s by the %s\n  %s: %s\n", r->a.soup->file,

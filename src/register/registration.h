@@ -1,4 +1,4 @@
-/* What the files of a registration know of each other. */
+/* The fields of a registration, private to this folder. */
 #ifndef EQM_REGISTRATION_H
 #define EQM_REGISTRATION_H
 
@@ -31,7 +31,7 @@ typedef struct {
    composition; and the farther a map is polished, the more rounding decides which of many equally good ones it becomes
    (docs/methods.md, Uniqueness). */
 #define EQM_REGISTER_RATIO_TOL 3e-3
-/* -lm_inner of these maps: damped steps pass differences on as they are, quasi-Newton steps magnify them. */
+/* -lm_inner of these maps: quasi-Newton steps amplify small differences, damped steps do not. */
 #define EQM_REGISTER_INNER 0
 
 /* One of the two meshes with its map to the target. */
@@ -39,10 +39,10 @@ typedef struct {
   const char *name; /* "A" or "B" */
   EqmIntake intake;
   EqmSoup soup; /* as the file has it: intake.given */
-  EqmMesh mesh; /* of intake.mapped, which is another where something was mended */
+  EqmMesh mesh; /* of intake.mapped, which differs where something was repaired */
   EqmOrigin origin;
   EqmMap map;        /* f or g as computed or read, of intake.mapped */
-  EqmMap read;       /* as read, of the file's mesh: `map` itself where nothing was mended; NULL: none was */
+  EqmMap read;       /* as read, of the file's mesh: `map` itself where nothing was repaired; NULL: none was read */
   PetscReal *x;      /* places in the target per local vertex, moved by rotations and h */
   PetscReal *weight; /* per owned vertex: its share of the measure, sum one */
 } EqmSide;
@@ -53,7 +53,7 @@ typedef struct {
   PetscReal landmark_mean, landmark_max; /* |h(f(p)) - g(q)| */
   PetscBool landmarks_in_space;
   PetscReal landmark_space_mean, landmark_space_max; /* |phi(p) - q| */
-  PetscReal start_left;                              /* what the landmarks' flow left over */
+  PetscReal start_left;                              /* largest distance of landmarks after the flow */
   PetscReal dissimilarity, dissimilarity_rigid;      /* d(phi) of 003 section 7; after the best rigid motion */
   PetscReal energy_b;                                /* of g, where it was moved of h o g */
   PetscReal energy;                                  /* E of h o f */
@@ -75,16 +75,16 @@ struct _p_EqmRegistration {
   PetscInt num_fields;
   EqmCarriedField *fields; /* of -transfer */
   PetscReal *goal;         /* dim per landmark: g(q) */
-  EqmLocation on_b;        /* landmarks that are points of B's surface: where, asked by rank 0; else NULL */
+  EqmLocation on_b;        /* locations of landmarks that are points of B's surface, on rank 0; else NULL */
   EqmLocation forward, inverse;
   PetscReal *image, *inverse_image; /* phi per owned vertex of A, phi^-1 per owned vertex of B: three coordinates */
   EqmMap map;
-  EqmMap found;      /* the same of A's mended mesh; NULL where nothing was mended */
-  PetscInt stage;    /* minimisations so far: each has a checkpoint of its own */
-  PetscBool told;    /* that it was stopped has been said on the screen */
-  PetscBool unsaved; /* the last of them could not be written */
+  EqmMap found;            /* the same of A's repaired mesh; NULL where nothing was repaired */
+  PetscInt stage;          /* minimisations so far: each has a checkpoint of its own */
+  PetscBool stop_reported; /* the solver has printed that the run was stopped */
+  PetscBool unsaved;       /* the last checkpoint could not be written */
   EqmStopFile stop_file;
-  char kept[PETSC_MAX_PATH_LEN]; /* what checkpoints say of the run's copies of its meshes */
+  char kept[PETSC_MAX_PATH_LEN]; /* the entry of checkpoints about the run's copies of its meshes */
   EqmStatus status;              /* EQM_STATUS_STOPPED: to be continued, and nothing further is done */
   char message[EQM_MESSAGE_MAX];
   EqmRegisterFigures figures;
@@ -102,26 +102,23 @@ PETSC_INTERN PetscErrorCode EqmSideReset(EqmSide *side);
    EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmSideCheckVertices(const EqmSide *side, PetscInt num, const PetscInt *vertices,
                                                  PetscInt *inside);
-/* `width` values of each of `num` vertices (input numbers), from values per owned vertex; the same on every rank.
-   Collective. */
-PETSC_INTERN PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *vertices, PetscInt width,
-                                          const PetscReal *values, PetscReal *gathered);
 /* Radius of the disk, sphere or ball that has the side's measure. Not collective. */
 PETSC_INTERN PetscReal EqmSideRadius(const EqmRegistration r, const EqmSide *side);
 /* ---- stages.c */
-/* From here on requests to stop are noted, and -checkpoint and -restart are known. Collective. */
+/* Watch for requests to stop, and read -checkpoint and -restart. Collective. */
 PETSC_INTERN PetscErrorCode EqmStagesBegin(EqmRegistration r);
-/* The first checkpoint of the run that goes on; NULL: it begins. */
+/* The first checkpoint of the run that is continued; NULL: a new run. */
 PETSC_INTERN PetscErrorCode EqmFirstRestart(EqmRegistration r, char name[PETSC_MAX_PATH_LEN], const char **restart);
 /* Copies of the meshes, with maps that were read, beside the checkpoints. Collective. */
 PETSC_INTERN PetscErrorCode EqmKeepMeshes(EqmRegistration r);
-/* Run a solver that is ready, as the next stage; takes note if it was stopped to be continued. Collective. */
+/* Run a solver, whose options are set, as the next stage; sets r->status if it was stopped to be continued. Collective.
+ */
 PETSC_INTERN PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver);
-/* Between two steps of the way: has somebody asked to stop, or, with `clock`, is -wall_time over? Then r->status is
-   EQM_STATUS_STOPPED and nothing further is to be done. Only with -checkpoint. Collective. */
-PETSC_INTERN PetscErrorCode EqmPause(EqmRegistration r, PetscBool clock);
+/* Between two steps of the registration: has a stop been requested, or, with `clock`, is -wall_time over? Then
+   r->status becomes EQM_STATUS_STOPPED and the remaining steps are skipped. Only with -checkpoint. Collective. */
+PETSC_INTERN PetscErrorCode EqmRegistrationCheckStop(EqmRegistration r, PetscBool clock);
 /* ---- goals.c */
-/* What can be said of landmarks before there are maps. Errors: EQM_ERR_USAGE. Collective. */
+/* Check landmarks before the maps are computed. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmCheckLandmarks(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmFindGoals(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmLandmarkErrors(EqmRegistration r);

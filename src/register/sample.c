@@ -1,4 +1,4 @@
-/* A sample of vertices and how far A carried to B is from a rigid motion of A. */
+/* A sample of vertices, and how far phi is from a rigid motion on it. */
 #include "register/sample.h"
 #include "mesh/mesh_private.h"
 #include "geometry/rotation.h"
@@ -56,7 +56,7 @@ PetscErrorCode EqmSampleCreate(EqmRegistration r, PetscInt size, EqmSample *s)
   PetscFunctionReturn(0);
 }
 
-/* phi(v) about the mean for each rotation: all points are asked for at once. */
+/* phi(v) about the mean for each rotation: all points are located at once. */
 static PetscErrorCode Carry(const EqmSample *s, PetscInt num, const PetscReal *rotations, PetscReal *images)
 {
   const PetscInt length = s->dim * s->count;

@@ -6,7 +6,7 @@ static const char *const alignments[] = {"auto", "shape", "pose", "none", "EqmAl
 static const char *const landmark_starts[] = {"flow", "rotation", "EqmLandmarkStart", "", NULL};
 static const char *const landmark_points[] = {"auto", "surface", "target", "EqmLandmarkPoints", "", NULL};
 
-static PetscErrorCode AskLandmarks(EqmRegisterSettings *set, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode ReadLandmarkOptions(EqmRegisterSettings *set, PetscOptionItems *PetscOptionsObject)
 {
   PetscFunctionBegin;
   PetscCall(
@@ -36,7 +36,7 @@ static PetscErrorCode AskLandmarks(EqmRegisterSettings *set, PetscOptionItems *P
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Ask(EqmRegisterSettings *set, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode ReadOptions(EqmRegisterSettings *set, PetscOptionItems *PetscOptionsObject)
 {
   PetscFunctionBegin;
   PetscCall(PetscOptionsString("-map_a", "the map of A, made before, where A itself holds none", NULL, "", set->map_a,
@@ -55,7 +55,7 @@ static PetscErrorCode Ask(EqmRegisterSettings *set, PetscOptionItems *PetscOptio
                        NULL, alignments, (PetscEnum)set->align, (PetscEnum *)&set->align, NULL));
   PetscCall(PetscOptionsBool("-repair", "mend first in both meshes what is safe to mend (see equimap check)", NULL,
                              set->repair, &set->repair, NULL));
-  PetscCall(AskLandmarks(set, PetscOptionsObject));
+  PetscCall(ReadLandmarkOptions(set, PetscOptionsObject));
   PetscCall(PetscOptionsString("-transfer",
                                "fields to carry along, separated by commas: coordinates, a dataset of A's .h5 file "
                                "(/vertex/ratio), a .csv file with a header and a row per vertex or cell; with b: in "
@@ -78,9 +78,10 @@ PetscErrorCode EqmRegistrationSetFromOptions(EqmRegistration r)
 
   PetscFunctionBegin;
   PetscOptionsBegin(r->comm, NULL, "Registration", NULL);
-  PetscCall(Ask(set, PetscOptionsObject));
+  PetscCall(ReadOptions(set, PetscOptionsObject));
   PetscOptionsEnd();
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &set->quiet, NULL)); /* the solver lists it, and what follows */
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &set->quiet,
+                                NULL)); /* the solver lists this option and the following ones */
   PetscCall(EqmStagesBegin(r));
   if (!(set->weight > 0.) || !(set->tolerance > 0.) || !(set->reach > 0.))
     EqmFail(r->comm, EQM_ERR_USAGE, "-landmark_weight, -landmark_tol and -landmark_reach want numbers above 0");

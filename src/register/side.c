@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Does the file hold a map beside its mesh? */
+/* Does the file have a map beside its mesh? */
 static PetscErrorCode HoldsMap(MPI_Comm comm, const char *file, PetscBool *holds)
 {
   EqmH5 h5;
@@ -24,8 +24,8 @@ static PetscErrorCode HoldsMap(MPI_Comm comm, const char *file, PetscBool *holds
   PetscFunctionReturn(0);
 }
 
-/* Both must be of one kind. */
-static PetscErrorCode TakeTarget(EqmRegistration r, const EqmSide *side)
+/* A and B must have the same topology, and so the same target. */
+static PetscErrorCode SetTarget(EqmRegistration r, const EqmSide *side)
 {
   const EqmIntake *const intake = &side->intake;
 
@@ -42,8 +42,8 @@ static PetscErrorCode TakeTarget(EqmRegistration r, const EqmSide *side)
   PetscFunctionReturn(0);
 }
 
-/* Is a map that was read one to this target? Places on the sphere, or within the disk or ball and of boundary vertices
-   on its boundary. */
+/* Check that a map from a file is one to this target: images on the sphere, or in the disk or ball with boundary
+   vertices on its boundary. */
 static PetscErrorCode CheckMap(EqmRegistration r, EqmSide *side, const char *file)
 {
   const EqmMesh mesh = side->mesh;
@@ -55,7 +55,7 @@ static PetscErrorCode CheckMap(EqmRegistration r, EqmSide *side, const char *fil
     for (PetscInt k = 0; k < r->dim; k++) squared += PetscSqr(side->x[r->dim * v + k]);
     const PetscBool on_it = (PetscBool)(r->kind == EQM_IMAGE_SPHERE || mesh->on_boundary[v]);
     const PetscReal beyond = PetscSqrtReal(squared) - 1., off = on_it ? PetscAbsReal(beyond) : PetscMax(0., beyond);
-    if (!(off <= worst)) worst = off < INFINITY ? off : PETSC_MAX_REAL; /* no number: as far off as can be */
+    if (!(off <= worst)) worst = off < INFINITY ? off : PETSC_MAX_REAL; /* not a number: infinitely far off */
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, r->comm));
   if (!(worst < 1e-6))
@@ -65,8 +65,8 @@ static PetscErrorCode CheckMap(EqmRegistration r, EqmSide *side, const char *fil
   PetscFunctionReturn(0);
 }
 
-/* Maps that look at the target from behind cannot be composed with those that do not: turn them over. */
-static PetscErrorCode TurnMirrored(EqmRegistration r, EqmSide *side)
+/* Maps of opposite orientation cannot be composed: reflect the negative one. */
+static PetscErrorCode ReflectMirrored(EqmRegistration r, EqmSide *side)
 {
   const EqmMesh mesh = side->mesh;
   PetscReal local = 0., total;
@@ -93,11 +93,12 @@ static PetscErrorCode WeighVertices(EqmSide *side)
   PetscFunctionReturn(0);
 }
 
-/* Places of the mended mesh, where a result of a mended mesh has them. */
-static PetscErrorCode ReadMended(EqmRegistration r, EqmSide *side, const char *file, PetscBool *found)
+/* Read the images of the repaired mesh, if the result has them. */
+static PetscErrorCode ReadRepaired(EqmRegistration r, EqmSide *side, const char *file, PetscBool *found)
 {
-  const EqmSoup mended = side->intake.mapped;
-  EqmSlab slab = {mended->num_vertices, mended->vertex_start, mended->vertex_end - mended->vertex_start, r->dim};
+  const EqmSoup repaired = side->intake.mapped;
+  EqmSlab slab = {repaired->num_vertices, repaired->vertex_start, repaired->vertex_end - repaired->vertex_start,
+                  r->dim};
   const char *const path = "/repaired/coordinates";
   PetscInt64 rows = 0, width = 0;
   PetscReal *places;
@@ -111,20 +112,20 @@ static PetscErrorCode ReadMended(EqmRegistration r, EqmSide *side, const char *f
   *found = (PetscBool)(rows == slab.total && width == slab.width);
   if (*found) PetscCall(EqmH5ReadReals(h5, path, slab, places));
   PetscCall(EqmH5Close(&h5));
-  if (*found) PetscCall(EqmMeshVerticesFromInput(side->mesh, mended, r->dim, places, side->x));
+  if (*found) PetscCall(EqmMeshVerticesFromInput(side->mesh, repaired, r->dim, places, side->x));
   PetscCall(PetscFree(places));
   PetscFunctionReturn(0);
 }
 
-/* The map of the file's mesh as one of the mended mesh: as it was when the same was mended before, else linear in the
+/* The map of the repaired mesh: from the result if that has the same repaired mesh, else by linear interpolation in the
    cells of the file. */
-static PetscErrorCode TakeMended(EqmRegistration r, EqmSide *side, const char *file)
+static PetscErrorCode SetRepairedMap(EqmRegistration r, EqmSide *side, const char *file)
 {
   const EqmIntake *const intake = &side->intake;
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBegin;
-  if (EqmHasSuffix(file, ".h5")) PetscCall(ReadMended(r, side, file, &found));
+  if (EqmHasSuffix(file, ".h5")) PetscCall(ReadRepaired(r, side, file, &found));
   if (!found) PetscCall(EqmVerticesFromOrigin(side->origin, r->dim, side->read->coordinates, side->x));
   PetscCall(EqmMapCreate(intake->mapped, r->dim, &side->map));
   PetscCall(EqmMeshVerticesToInput(side->mesh, intake->mapped, r->dim, side->x, side->map->coordinates));
@@ -146,7 +147,7 @@ static PetscErrorCode ReadMap(EqmRegistration r, EqmSide *side, const char *file
             side->read->dim, r->target, r->dim);
   PetscCall(PetscMalloc1(r->dim * side->mesh->num_local, &side->x));
   if (side->intake.mapped != side->intake.given) {
-    PetscCall(TakeMended(r, side, file));
+    PetscCall(SetRepairedMap(r, side, file));
   } else {
     side->map = side->read;
     PetscCall(EqmMeshVerticesFromInput(side->mesh, side->soup, r->dim, side->read->coordinates, side->x));
@@ -154,13 +155,12 @@ static PetscErrorCode ReadMap(EqmRegistration r, EqmSide *side, const char *file
   if (is_copy) PetscCall(EqmKeptMeshCheckMap(side->read, file));
   PetscCall(EqmPhaseEnd(r->ledger, EQM_PHASE_READ));
   PetscCall(CheckMap(r, side, file));
-  PetscCall(TurnMirrored(r, side));
+  PetscCall(ReflectMirrored(r, side));
   PetscCall(EqmMapMeasure(side->map, side->mesh, side->x));
   PetscFunctionReturn(0);
 }
 
-/* Which file has the map: the one that is named, the mesh's own, the run's copy where the named one is gone; NULL:
-   none has. */
+/* Which file has the map: the named one, the mesh's own, or the run's copy if the named one is gone; NULL: none has. */
 static PetscErrorCode ChooseMap(EqmRegistration r, EqmIntakeOptions *options, const char *restart, const char *map_file,
                                 const char **file, PetscBool *is_copy)
 {
@@ -200,7 +200,7 @@ PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, c
   PetscCall(EqmIntakeChoose(r->comm, file, restart, &options));
   PetscCall(EqmIntakeRead(r->comm, &options, r->ledger, &side->intake));
   side->soup = side->intake.given;
-  PetscCall(TakeTarget(r, side));
+  PetscCall(SetTarget(r, side));
   PetscCall(ChooseMap(r, &options, restart, map_file, &with_map, &is_copy));
   PetscCall(EqmPhaseBegin(r->ledger, EQM_PHASE_DISTRIBUTE));
   PetscCall(EqmMeshCreate(side->intake.mapped, r->ledger, &side->mesh));
@@ -270,22 +270,6 @@ PetscErrorCode EqmSideCheckVertices(const EqmSide *side, PetscInt num, const Pet
             i + 1, vertices[i], side->name);
   }
   PetscCall(PetscFree2(local, owners));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmSideGather(const EqmSide *side, PetscInt num, const PetscInt *vertices, PetscInt width,
-                             const PetscReal *values, PetscReal *gathered)
-{
-  PetscInt *local;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(num, &local));
-  PetscCall(EqmMeshFindVertices(side->mesh, num, vertices, local));
-  for (PetscInt i = 0; i < num; i++) {
-    for (PetscInt k = 0; k < width; k++) gathered[width * i + k] = local[i] >= 0 ? values[width * local[i] + k] : 0.;
-  }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, gathered, (PetscMPIInt)(width * num), MPIU_REAL, MPIU_SUM, side->mesh->comm));
-  PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
 

@@ -28,7 +28,7 @@ PetscErrorCode EqmFirstRestart(EqmRegistration r, char name[PETSC_MAX_PATH_LEN],
   PetscFunctionReturn(0);
 }
 
-/* The copy of one of them; its name goes to those that checkpoints tell. */
+/* Write the copy of one mesh and add its name to the checkpoint's entry. */
 static PetscErrorCode Keep(EqmRegistration r, EqmSide *side)
 {
   char name[PETSC_MAX_PATH_LEN];
@@ -66,12 +66,12 @@ PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver solver)
   PetscCall(EqmSolverGetStatus(solver, &status, &message));
   if (status != EQM_STATUS_STOPPED) PetscFunctionReturn(0);
   r->status = status;
-  r->told = (PetscBool)!r->set.quiet; /* by the solver */
+  r->stop_reported = (PetscBool)!r->set.quiet; /* by the solver */
   PetscCall(PetscStrncpy(r->message, message, sizeof(r->message)));
   PetscFunctionReturn(0);
 }
 
-/* Seconds of this run, without those of the runs before that it goes on from. */
+/* Seconds of this run, without those of the earlier runs that it continues. */
 static PetscErrorCode SecondsSoFar(EqmRegistration r, PetscReal *seconds)
 {
   PetscReal earlier;
@@ -83,7 +83,7 @@ static PetscErrorCode SecondsSoFar(EqmRegistration r, PetscReal *seconds)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmPause(EqmRegistration r, PetscBool clock)
+PetscErrorCode EqmRegistrationCheckStop(EqmRegistration r, PetscBool clock)
 {
   const char *const file = r->set.checkpoint;
   char by[64] = "-wall_time";

@@ -3,7 +3,7 @@
 #include "mesh/mesh_private.h"
 #include <string.h>
 
-/* Where the middles of `to`'s cells lie among `from`'s. */
+/* Locate the centroids of `to`'s cells in `from`. */
 static PetscErrorCode LocateMiddles(EqmRegistration r, const EqmSide *from, const EqmSide *to, EqmLocation *location)
 {
   const EqmMesh mesh = to->mesh;
@@ -28,7 +28,7 @@ static PetscErrorCode LocateMiddles(EqmRegistration r, const EqmSide *from, cons
   PetscFunctionReturn(0);
 }
 
-/* A cell field: each cell gets the value of the cell in which its middle lies. */
+/* A cell field: each cell gets the value of the cell in which its centroid lies. */
 static PetscErrorCode CarryCells(EqmRegistration r, const EqmSide *from, const EqmSide *to,
                                  const EqmCarriedField *field, const char *path)
 {
@@ -50,7 +50,7 @@ static PetscErrorCode CarryCells(EqmRegistration r, const EqmSide *from, const E
   PetscFunctionReturn(0);
 }
 
-/* Root mean square of what the way there and back changes, over the field's own about its mean. */
+/* Round trip error: root mean square of the change from there and back, over the field's standard deviation. */
 static PetscErrorCode RoundTrip(EqmRegistration r, const EqmSide *from, PetscInt width, const PetscReal *value,
                                 const PetscReal *back, PetscReal *share)
 {
@@ -71,7 +71,7 @@ static PetscErrorCode RoundTrip(EqmRegistration r, const EqmSide *from, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* A vertex field, linear in each cell; then back again, to see what the way costs. */
+/* A vertex field, linear in each cell; then back again, for the round trip error. */
 static PetscErrorCode CarryVertices(EqmRegistration r, const EqmSide *from, const EqmSide *to,
                                     const EqmCarriedField *field, const char *path)
 {

@@ -51,7 +51,7 @@ static void CellBox(const EqmTree *tree, PetscInt cell, EqmBox *box)
   }
 }
 
-/* What the cells of a node are halved by: the sum of its corners along an axis, ties by label. */
+/* The sort key of a cell: the sum of its corners along an axis, ties by label. */
 static PetscReal Key(const EqmTree *tree, PetscInt cell, PetscInt axis)
 {
   PetscReal sum = 0.;
@@ -92,7 +92,7 @@ static void Select(EqmTree *tree, PetscInt axis, PetscInt low, PetscInt high, Pe
   }
 }
 
-/* The axis along which the middles of a node's cells are spread most. */
+/* The axis along which the centroids of a node's cells are spread most. */
 static PetscInt LongestAxis(const EqmTree *tree, PetscInt low, PetscInt high)
 {
   PetscReal longest = -1.;
@@ -122,7 +122,7 @@ static void Split(EqmTree *tree)
   }
 }
 
-/* From the leaves to the root. */
+/* Boxes of all nodes, from the leaves to the root. */
 static void MakeBoxes(EqmTree *tree)
 {
   const EqmBox empty = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -177,8 +177,8 @@ PetscErrorCode EqmTreeReset(EqmTree *tree)
   PetscFunctionReturn(0);
 }
 
-/* Look at one cell. */
-static void Try(const EqmTree *tree, PetscInt cell, const PetscReal y[3], EqmHit *hit)
+/* Test one cell. */
+static void TestCell(const EqmTree *tree, PetscInt cell, const PetscReal y[3], EqmHit *hit)
 {
   const PetscReal *corner[4];
   PetscReal barycentric[4] = {0., 0., 0., 0.}, squared;
@@ -202,7 +202,7 @@ void EqmTreeFind(const EqmTree *tree, const PetscReal y[3], EqmHit *hit)
   while (depth > 0) {
     const PetscInt k = stack[--depth];
     if (EqmBoxSquaredDistance(&tree->box[k], y) > hit->squared) continue;
-    if (k < first_leaf) { /* the nearer child is looked at first */
+    if (k < first_leaf) { /* the nearer child is searched first */
       const PetscBool swap =
           (PetscBool)(EqmBoxSquaredDistance(&tree->box[2 * k], y) < EqmBoxSquaredDistance(&tree->box[2 * k + 1], y));
       stack[depth++] = swap ? 2 * k + 1 : 2 * k;
@@ -210,6 +210,6 @@ void EqmTreeFind(const EqmTree *tree, const PetscReal y[3], EqmHit *hit)
       continue;
     }
     for (PetscInt c = NodeStart(tree, tree->num_levels, k); c < NodeStart(tree, tree->num_levels, k + 1); c++)
-      Try(tree, tree->order[c], y, hit);
+      TestCell(tree, tree->order[c], y, hit);
   }
 }

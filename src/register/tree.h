@@ -33,7 +33,7 @@ PETSC_INTERN PetscReal EqmBoxSquaredDistance(const EqmBox *box, const PetscReal 
 PETSC_INTERN PetscErrorCode EqmTreeCreate(EqmImageKind kind, PetscInt cell_size, PetscInt num_cells, PetscReal *corner,
                                           PetscInt *label, PetscReal tolerance, EqmTree *tree);
 PETSC_INTERN PetscErrorCode EqmTreeReset(EqmTree *tree);
-/* Look for a cell that is closer than `hit` says, or as close with a lower label. Not collective. */
+/* Search for a cell that is closer than `hit`, or as close with a lower label. Not collective. */
 PETSC_INTERN void EqmTreeFind(const EqmTree *tree, const PetscReal y[3], EqmHit *hit);
 
 #endif

@@ -29,7 +29,7 @@ PetscErrorCode EqmSolverSetOptionsPrefix(EqmSolver solver, const char *prefix)
   PetscFunctionReturn(0);
 }
 
-/* What has been settled is open again. */
+/* Undo EqmSolverResolveSettings: the options may have changed. */
 PetscErrorCode EqmSolverSetMethod(EqmSolver solver, const char *name)
 {
   PetscFunctionBegin;

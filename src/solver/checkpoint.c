@@ -1,4 +1,4 @@
-/* When a checkpoint is written, and when a run stops because it was asked to. */
+/* When a checkpoint is written, and when a run stops on request. */
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
 #include "base/atomicfile.h"
@@ -26,8 +26,8 @@ PetscErrorCode EqmCheckpointBegin(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* How writing went; a failure is told the first time. */
-static PetscErrorCode Note(EqmSolver solver, PetscErrorCode error, const char *message)
+/* Record whether writing succeeded; the first failure is reported. */
+static PetscErrorCode RecordOutcome(EqmSolver solver, PetscErrorCode error, const char *message)
 {
   EqmCheckpoints *const known = &solver->checkpoints;
 
@@ -39,7 +39,7 @@ static PetscErrorCode Note(EqmSolver solver, PetscErrorCode error, const char *m
   PetscFunctionReturn(0);
 }
 
-/* Wait for the disk. */
+/* Wait until the last checkpoint is on disk. */
 static PetscErrorCode Finish(EqmSolver solver)
 {
   char message[EQM_MESSAGE_MAX] = "";
@@ -50,11 +50,11 @@ static PetscErrorCode Finish(EqmSolver solver)
   PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
   error = EqmStateFinish(&solver->checkpoints.writing);
   PetscCall(PetscPopErrorHandler());
-  PetscCall(Note(solver, error, message));
+  PetscCall(RecordOutcome(solver, error, message));
   PetscFunctionReturn(0);
 }
 
-/* Write one while the disk may still be busy with it when the next iteration begins. */
+/* Begin to write a checkpoint; the disk may still be busy when the next iteration begins. */
 static PetscErrorCode Save(EqmSolver solver)
 {
   EqmCheckpoints *const known = &solver->checkpoints;
@@ -67,11 +67,11 @@ static PetscErrorCode Save(EqmSolver solver)
   error = EqmStateSave(solver->mesh, solver->settings.checkpoint, EqmCheckpointVisit, solver, &known->writing);
   PetscCall(PetscPopErrorHandler());
   known->written = solver->iterate->number;
-  if (error) PetscCall(Note(solver, error, message));
+  if (error) PetscCall(RecordOutcome(solver, error, message));
   PetscFunctionReturn(0);
 }
 
-/* Write one now, or wait for the last one, or both, by the clock of checkpoints. */
+/* Begin to write a checkpoint, finish the last one, or both; the time counts as checkpoint time. */
 static PetscErrorCode Write(EqmSolver solver, PetscBool save, PetscBool finish)
 {
   EqmCheckpoints *const known = &solver->checkpoints;
@@ -92,7 +92,8 @@ static PetscErrorCode Write(EqmSolver solver, PetscBool save, PetscBool finish)
   PetscFunctionReturn(0);
 }
 
-/* Every so many iterations; or, if that is left open, when it costs no more than a small part of the time. */
+/* Is a checkpoint due: after -checkpoint_every iterations, or without that option when checkpoints take no more than a
+   small part of the run time? */
 static PetscBool IsDue(EqmSolver solver)
 {
   const EqmCheckpoints *const known = &solver->checkpoints;
@@ -131,9 +132,9 @@ PetscErrorCode EqmCheckpointEnd(EqmSolver solver)
 
 /* ---- stopping */
 
-/* Seconds to keep in hand so that one more iteration and a checkpoint end before -wall_time. A run makes one iteration
-   at least, or a chain of restarts would not move. */
-static PetscReal Reserve(EqmSolver solver)
+/* Seconds to reserve so that one more iteration and a checkpoint end before -wall_time. Every run makes at least one
+   iteration, as otherwise a chain of restarts would not progress. */
+static PetscReal ReservedSeconds(EqmSolver solver)
 {
   const EqmHistoryRow *const last = &solver->history[solver->num_history - 1];
 
@@ -141,7 +142,7 @@ static PetscReal Reserve(EqmSolver solver)
   return last->seconds - last[-1].seconds + solver->checkpoints.cost;
 }
 
-PetscErrorCode EqmCheckpointAskedToStop(EqmSolver solver, PetscBool *stop)
+PetscErrorCode EqmCheckpointStopRequested(EqmSolver solver, PetscBool *stop)
 {
   const EqmSolverSettings *const set = &solver->settings;
   EqmStopReason reason;
@@ -159,7 +160,7 @@ PetscErrorCode EqmCheckpointAskedToStop(EqmSolver solver, PetscBool *stop)
   if (reason != EQM_STOP_NONE) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by %s after iteration %" PetscInt_FMT,
                             EqmStopReasonName(reason), solver->iterate->number));
-  } else if (set->wall_time > 0. && seconds + Reserve(solver) >= set->wall_time) {
+  } else if (set->wall_time > 0. && seconds + ReservedSeconds(solver) >= set->wall_time) {
     PetscCall(
         PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %g s", (double)set->wall_time));
   } else {

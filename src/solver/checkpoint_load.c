@@ -1,4 +1,4 @@
-/* Which checkpoint a run goes on from. */
+/* Choose and load the checkpoint that a run continues from. */
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
 #include "solver/inner.h"
@@ -20,11 +20,11 @@ PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage)
   PetscCall(EqmStatePreviousName(set->restart, previous, sizeof(previous)));
   PetscCall(EqmFileIsThere(solver->comm, set->restart, &there));
   PetscCall(EqmFileIsThere(solver->comm, previous, &before));
-  if (stage > 1 && !there && !before) set->restart[0] = '\0'; /* the run had not come so far */
+  if (stage > 1 && !there && !before) set->restart[0] = '\0'; /* the run was stopped before */
   PetscFunctionReturn(0);
 }
 
-/* The newer of the two checkpoints that is sound. */
+/* Open the newest of the two checkpoints that is not damaged. */
 static PetscErrorCode OpenNewest(EqmSolver solver, char *name, size_t length)
 {
   const char *const file = solver->settings.restart;

@@ -35,7 +35,7 @@ static EqmHistoryRow UnpackRow(PetscInt iteration, const PetscReal *packed)
                          .seconds = packed[9]};
 }
 
-/* Row after row, the objective last; the columns are told in an attribute. */
+/* Row by row, the objective last; an attribute names the columns. */
 static PetscErrorCode VisitHistory(EqmState state, EqmSolver solver)
 {
   char columns[] = "energy, sd, folds, step, gradient_norm, evaluations, factorizations, coupled_factorizations, "
@@ -62,7 +62,7 @@ static PetscErrorCode VisitHistory(EqmState state, EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* A run of another problem must not go on from here. */
+/* Refuse the checkpoint of another problem. */
 static PetscErrorCode VisitProblem(EqmState state, EqmSolver solver)
 {
   const EqmSolverSettings *const set = &solver->settings;
@@ -85,7 +85,7 @@ static PetscErrorCode VisitProblem(EqmState state, EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* Clocks go on from where they stood. */
+/* Clocks continue from the saved seconds. */
 static PetscErrorCode VisitSeconds(EqmState state, EqmSolver solver)
 {
   PetscReal phases[EQM_NUM_PHASES], events[EQM_NUM_EVENTS], total;
@@ -100,7 +100,7 @@ static PetscErrorCode VisitSeconds(EqmState state, EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* The copy of the mesh that a run left beside its checkpoint, for whoever goes on without the mesh itself. */
+/* Name of the copy of the mesh beside the checkpoint, for a restart without the mesh itself. */
 static PetscErrorCode VisitKeptMesh(EqmState state, EqmSolver solver)
 {
   char copy[PETSC_MAX_PATH_LEN];
@@ -111,7 +111,7 @@ static PetscErrorCode VisitKeptMesh(EqmState state, EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* All that can be known before the method is set up. */
+/* The part that is loaded before the method is set up. */
 PetscErrorCode EqmCheckpointVisitMap(EqmState state, EqmSolver solver)
 {
   PetscInt status = (PetscInt)solver->status;
@@ -134,7 +134,7 @@ PetscErrorCode EqmCheckpointVisitMap(EqmState state, EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* The rest; what set_up has done to the map, and the state of the method to figures and counters, is set right. */
+/* The rest: the method's state, then the map, figures and counters that set_up may have changed. */
 PetscErrorCode EqmCheckpointVisitMethod(EqmState state, EqmSolver solver)
 {
   EqmWork *work;

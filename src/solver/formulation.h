@@ -7,7 +7,7 @@
 #include "method/method.h"
 #include "start/start.h"
 
-/* A method as it is set for a formulation unless the user says otherwise. */
+/* Default settings of a method for a formulation. */
 typedef struct {
   const char *name;   /* of -method */
   const char *method; /* as it is registered */
@@ -19,7 +19,7 @@ typedef struct {
 } EqmMethodDefaults;
 
 typedef struct {
-  const char *target, *domain; /* of the tables in mesh/target.c; several rows of a target are told apart by the mesh */
+  const char *target, *domain; /* of the tables in mesh/target.c; the mesh decides between several rows of a target */
   const EqmObjective *objective;
   PetscErrorCode (*unfold)(EqmProblem, EqmIterate, PetscInt64 *before, PetscInt64 *after); /* NULL: cannot */
   PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
@@ -35,8 +35,8 @@ PETSC_INTERN PetscErrorCode EqmFormulationFind(MPI_Comm comm, const char *target
                                                const EqmFormulation **formulation);
 /* The next one of the same target after `formulation`, of NULL the first; NULL where there is none. Not collective. */
 PETSC_INTERN const EqmFormulation *EqmFormulationNext(const char *target, const EqmFormulation *formulation);
-/* The settings of a method's name; "auto" is the first. A registered method that the table does not know gets the
-   target's general settings. Errors: EQM_ERR_USAGE. Collective. */
+/* The default settings of a method by name; "auto" is the first. A registered method that the table does not list gets
+   the general defaults. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmFormulationFindMethod(MPI_Comm comm, const EqmFormulation *formulation, const char *name,
                                                      EqmMethodDefaults *defaults);
 /* Names of the methods for a target, or for one formulation of it unless that is NULL, separated by commas. Not

@@ -2,7 +2,7 @@
 #include "solver/solver_private.h"
 #include "solver/inner.h"
 
-/* Of the ball's start, which maps the surface to the sphere with options of its own. */
+/* Options of the inner solver in the ball's start, which maps the surface to the sphere. */
 static PetscErrorCode ListSurfaceOptions(EqmSolver solver)
 {
   struct _p_EqmSolver sphere = {.comm = solver->comm, .target = "sphere"};

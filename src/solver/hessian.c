@@ -2,12 +2,12 @@
 
    With E(a) = sum a^2/(w A) - A and s = dE/da, the Riemannian Hessian in the frames' degrees of freedom is
 
-       H = (2/A) J^T W^-1 J + sum s (Hess a + what the geodesics' curvature adds) + U C U^T,
+       H = (2/A) J^T W^-1 J + sum s (Hess a + the geodesics' curvature term) + U C U^T,
 
-   J = da, W the weights, and U the gradients of A and of sum (r - 1) a at frozen r: what the total area couples. E(a)
-   is convex, so that only the sum over s can be negative: the eigenvalues lie above minus the largest sum, over the
-   cells around a vertex, of these cells' norms. H less a shift below that bound is definite; its inverse, a factor and
-   two extra columns (Woodbury), turns H's smallest eigenvalues into the largest, which Lanczos finds at once. */
+   J = da, W the weights, and U the gradients of A and of sum (r - 1) a at frozen r: the coupling by the total area.
+   E(a) is convex, so that only the sum over s can be negative: the eigenvalues lie above minus the largest sum, over
+   the cells around a vertex, of these cells' norms. H less a shift below that bound is definite; its inverse, a factor
+   and two extra columns (Woodbury), turns H's smallest eigenvalues into the largest, which Lanczos finds at once. */
 #include "solver/solver_private.h"
 #include "domain/domain_private.h"
 #include "energy/curvature.h"
@@ -21,7 +21,7 @@ typedef struct {
   PetscReal shift;             /* below all eigenvalues */
   PetscReal *slope;            /* s per local cell */
   PetscReal *share;            /* per local vertex: one over the cells around it, for owned ones */
-  Vec column[2], solved[2];    /* U, and what the factor makes of it */
+  Vec column[2], solved[2];    /* U, and factor^-1 U */
   PetscReal capacitance[2][2]; /* (C^-1 + U^T solved)^-1 */
 } Hessian;
 
@@ -69,7 +69,7 @@ static PetscErrorCode Prepare(Hessian *h)
   for (PetscInt v = 0; v < mesh->num_local; v++) h->share[v] = 1. / h->share[v];
   PetscCall(PetscFree(norm));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPIU_MAX, mesh->comm));
-  h->shift = -PetscMax(1.001 * largest[0], 1e-9 * largest[1]); /* the second: rotations must not make it singular */
+  h->shift = -PetscMax(1.001 * largest[0], 1e-9 * largest[1]); /* second term: rotations must not make it singular */
   PetscFunctionReturn(0);
 }
 
@@ -152,7 +152,7 @@ static PetscErrorCode Lanczos(Hessian *h, PetscInt num_dofs, PetscInt wanted, Pe
   PetscCall(EPSSetProblemType(eps, EPS_HEP));
   PetscCall(EPSSetWhichEigenpairs(eps, EPS_LARGEST_REAL));
   PetscCall(EPSSetDimensions(eps, wanted, PetscMin(num_dofs, 2 * wanted + 60),
-                             PETSC_DEFAULT)); /* near a minimum they crowd */
+                             PETSC_DEFAULT)); /* near a minimum they cluster */
   PetscCall(EPSSetTolerances(eps, 1e-7, 300));
   PetscCall(EPSSetFromOptions(eps));
   PetscCall(EPSSolve(eps));

@@ -1,4 +1,4 @@
-/* The history of a run, and what is told to the monitor. */
+/* The history of a run, and the calls of the monitor. */
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
 

@@ -1,4 +1,5 @@
-/* What runs inside other runs need of a solver beyond the public interface: register's stages, the ball's start. */
+/* Functions for solvers inside other solvers, beyond the public interface: the stages of a registration, the ball's
+   start. */
 #ifndef EQM_SOLVER_INNER_H
 #define EQM_SOLVER_INNER_H
 
@@ -9,13 +10,13 @@
    -checkpoint and -restart get .STAGE behind. A later stage whose checkpoint is not there begins anew. Call after
    EqmSolverSetFromOptions. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage);
-/* Watch for the file STOP that has been watched for since the run began. Not collective. */
+/* Use the watch for the file STOP that began with the whole run. Not collective. */
 PETSC_INTERN PetscErrorCode EqmSolverSetStopFile(EqmSolver solver, const EqmStopFile *watch);
-/* Requests to stop are not for this solver: a start that was cut short would be another start. Not collective. */
+/* Ignore requests to stop: a start that is cut short would be another start. Not collective. */
 PETSC_INTERN PetscErrorCode EqmSolverIgnoreStopRequests(EqmSolver solver);
 /* The name that checkpoints give for the run's copies of its meshes. Not collective. */
 PETSC_INTERN PetscErrorCode EqmSolverSetKeptMesh(EqmSolver solver, const char *name);
-/* Could the last checkpoint not be written? Not collective. */
+/* Did the last attempt to write a checkpoint fail? Not collective. */
 PETSC_INTERN PetscErrorCode EqmSolverCheckpointFailed(EqmSolver solver, PetscBool *failed);
 /* lm: at most so many quasi-Newton steps on each factor, unless -lm_inner says otherwise. Not collective. */
 PETSC_INTERN PetscErrorCode EqmSolverSetInnerSteps(EqmSolver solver, PetscInt steps);

@@ -1,11 +1,11 @@
-/* Conformal maps of closed surfaces that fold, or that have cells too small for the arithmetic: once more on the
+/* Conformal maps of closed surfaces that fold, or that have cells too small for the arithmetic: computed again on the
    intrinsic Delaunay triangulation (docs/methods.md, Thin limbs). */
 #include "solver/solver_private.h"
 #include "domain/domain_private.h"
 #include <string.h>
 
-/* A map of another mesh of the same vertices becomes the solver's: normalised, unfolded if it must be. */
-static PetscErrorCode TakePlaces(EqmSolver solver, EqmProblem other, EqmIterate found, EqmSoup flipped)
+/* Set the solver's map to one of another mesh with the same vertices: normalised, and unfolded if necessary. */
+static PetscErrorCode SetImages(EqmSolver solver, EqmProblem other, EqmIterate found, EqmSoup flipped)
 {
   const EqmSoup soup = solver->mesh->soup;
   const EqmProblem problem = solver->problem;
@@ -27,8 +27,8 @@ static PetscErrorCode TakePlaces(EqmSolver solver, EqmProblem other, EqmIterate 
   PetscFunctionReturn(0);
 }
 
-/* Where the new map folds no more than the old one, which has jammed or worse, it is taken. */
-static PetscErrorCode TakeIfBetter(EqmSolver solver, EqmProblem other, EqmIterate found, EqmSoup flipped)
+/* Accept the new map if it folds no more than the old one, which has folds or did not converge. */
+static PetscErrorCode AcceptIfBetter(EqmSolver solver, EqmProblem other, EqmIterate found, EqmSoup flipped)
 {
   const EqmIterate iterate = solver->iterate;
   const EqmDomain domain = solver->problem->domain;
@@ -38,7 +38,7 @@ static PetscErrorCode TakeIfBetter(EqmSolver solver, EqmProblem other, EqmIterat
   PetscFunctionBegin;
   PetscCall(EqmPlaceCreate(domain, &before));
   PetscCall(EqmPlaceCopy(domain, &iterate->place, &before));
-  PetscCall(TakePlaces(solver, other, found, flipped));
+  PetscCall(SetImages(solver, other, found, flipped));
   if (iterate->totals.folds > folds) {
     PetscCall(EqmPlaceCopy(domain, &before, &iterate->place));
     PetscCall(EqmIterateUpdate(solver->problem, iterate));
@@ -51,7 +51,7 @@ static PetscErrorCode TakeIfBetter(EqmSolver solver, EqmProblem other, EqmIterat
   PetscFunctionReturn(0);
 }
 
-/* The map of the flipped mesh. Two of its triangles may have the same corners: folds mean nothing there. */
+/* The map of the flipped mesh. Two of its triangles may have the same corners, so folds are not counted there. */
 static PetscErrorCode SolveFlipped(EqmSolver solver, EqmSoup flipped)
 {
   const EqmLedger ledger = solver->mesh->ledger;
@@ -72,7 +72,7 @@ static PetscErrorCode SolveFlipped(EqmSolver solver, EqmSoup flipped)
   PetscCall(EqmStartOptionsDefault(&options));
   PetscCall(EqmStartRun(&EqmStartSphereResolved, problem, found, &options));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_START));
-  PetscCall(TakeIfBetter(solver, problem, found, flipped));
+  PetscCall(AcceptIfBetter(solver, problem, found, flipped));
   PetscCall(EqmIterateDestroy(&found));
   PetscCall(EqmProblemDestroy(&problem));
   PetscCall(EqmMeshDestroy(&mesh));

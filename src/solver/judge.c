@@ -3,7 +3,7 @@
 #include "mesh/mesh_private.h"
 #include <string.h>
 
-/* Has the objective all but stopped falling over the last iterations? */
+/* Is the decrease of the objective over the last iterations below -energy_rtol? */
 static PetscBool Stagnates(EqmSolver solver)
 {
   const PetscInt last = solver->num_history - 1, span = solver->settings.stagnation;
@@ -14,8 +14,8 @@ static PetscBool Stagnates(EqmSolver solver)
                      then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
 }
 
-/* The method has come to its end, but the map may be none of equal areas. */
-static PetscErrorCode DoubtStandstill(EqmSolver solver)
+/* A method that has converged, but to a map far from equal areas, has not converged. */
+static PetscErrorCode RejectPoorMap(EqmSolver solver)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
   const PetscReal poor = solver->problem->objective->poor_energy;
@@ -55,7 +55,7 @@ static PetscErrorCode MeetsTolerance(EqmSolver solver, PetscBool *meets)
   PetscFunctionReturn(0);
 }
 
-/* The clock is rank 0's, so that all ranks agree. */
+/* Is a limit on iterations, factorisations or time exceeded? By rank 0's clock, so that all ranks agree. */
 static PetscErrorCode ExceedsLimit(EqmSolver solver, PetscBool *stop)
 {
   const EqmSolverSettings *const set = &solver->settings;
@@ -71,7 +71,7 @@ static PetscErrorCode ExceedsLimit(EqmSolver solver, PetscBool *stop)
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
                             "stopped after -max_factorizations %" PetscInt_FMT, set->max_factorizations));
   } else {
-    PetscCall(EqmCheckpointAskedToStop(solver, stop));
+    PetscCall(EqmCheckpointStopRequested(solver, stop));
   }
   PetscFunctionReturn(0);
 }
@@ -104,7 +104,7 @@ PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop)
                             "the objective fell by less than %g %% per iteration over the last %" PetscInt_FMT
                             " iterations",
                             100. * (double)solver->settings.energy_rtol, solver->settings.stagnation));
-    PetscCall(DoubtStandstill(solver));
+    PetscCall(RejectPoorMap(solver));
     PetscFunctionReturn(0);
   }
   solver->status = EQM_STATUS_NOT_CONVERGED;
@@ -133,7 +133,7 @@ PetscErrorCode EqmJudgeEnd(EqmSolver solver, EqmStep outcome)
   solver->status = converged ? EQM_STATUS_CONVERGED : EQM_STATUS_NOT_CONVERGED;
   PetscCall(PetscStrncpy(solver->message, solver->method->message[0] ? solver->method->message : usual,
                          sizeof(solver->message)));
-  if (converged) PetscCall(DoubtStandstill(solver));
+  if (converged) PetscCall(RejectPoorMap(solver));
   PetscFunctionReturn(0);
 }
 

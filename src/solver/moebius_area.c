@@ -1,4 +1,4 @@
-/* The Mobius map that leaves least area distortion: three parameters, the shift's, by a quasi-Newton method. */
+/* The Mobius map of least area distortion: a quasi-Newton method in the three parameters of the shift. */
 #include "solver/normalise.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"

@@ -1,4 +1,4 @@
-/* What a user sees while it runs: one line that renews itself on a terminal, plain lines now and then in a log. */
+/* The text monitor: one line that is overwritten on a terminal, plain lines at intervals in a log. */
 #include "solver/solver_private.h"
 #include <stdlib.h>
 #include <unistd.h>
@@ -6,7 +6,8 @@
 /* Plain lines come at most this often, in seconds, so that a batch log stays readable. */
 static const PetscReal log_interval = 2.;
 
-/* A launcher may hand its ranks a pseudo-terminal though its own output goes to a file: under one, lines are plain. */
+/* Under a launcher, ranks may have a pseudo-terminal although the launcher's output goes to a file: lines are plain
+   there. */
 static PetscBool OnTerminal(void)
 {
   static const char *const launchers[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"};

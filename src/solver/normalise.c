@@ -1,6 +1,7 @@
-/* Angle-preserving maps to the sphere are unique up to Mobius maps: which one is it to be? The mass centre in the
-   middle; three vertices at given places; least area distortion; or landmarks near given places. */
+/* Normalisation of angle-preserving maps to the sphere, which are unique up to Mobius maps: mass centre at the origin;
+   three vertices at given points; least area distortion; or landmarks near given points. */
 #include "solver/solver_private.h"
+#include "mesh/gather.h"
 #include "mesh/mesh_private.h"
 #include "domain/projective.h"
 #include "geometry/simplex.h"
@@ -9,38 +10,17 @@
 typedef enum { MOEBIUS_CENTER, MOEBIUS_AREA } Choice;
 static const char *const choices[] = {"center", "area", "EqmMoebiusChoice", "EQM_MOEBIUS_", NULL};
 
-/* Present places of some vertices (input numbers), on every rank. A vertex that no triangle uses has none. */
-static PetscErrorCode PlacesOf(EqmProblem problem, EqmIterate iterate, PetscInt count, const PetscInt *vertex,
-                               PetscReal *x)
+/* Images of some vertices (input numbers), on every rank. A usage error for a vertex that no triangle uses. */
+static PetscErrorCode GatherImages(EqmProblem problem, EqmIterate iterate, PetscInt num, const PetscInt *vertices,
+                                   PetscReal *x)
 {
-  const EqmMesh mesh = problem->mesh;
-  PetscReal *found;
-  PetscInt *sorted, *which;
+  PetscInt missing;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(4 * count, &found));
-  PetscCall(PetscMalloc2(count, &sorted, count, &which));
-  for (PetscInt i = 0; i < count; i++) {
-    sorted[i] = vertex[i];
-    which[i] = i;
-  }
-  PetscCall(PetscSortIntWithArray(count, sorted, which));
-  for (PetscInt v = 0; v < mesh->num_owned; v++) {
-    PetscInt place;
-    PetscCall(PetscFindInt(mesh->vertex_input[v], count, sorted, &place));
-    if (place < 0) continue;
-    for (PetscInt k = 0; k < 3; k++) found[4 * which[place] + k] = iterate->place.x[3 * v + k];
-    found[4 * which[place] + 3] = 1.;
-  }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, found, (PetscMPIInt)(4 * count), MPIU_REAL, MPIU_SUM, problem->comm));
-  for (PetscInt i = 0; i < count; i++) {
-    if (found[4 * i + 3] == 0.)
-      EqmFail(problem->comm, EQM_ERR_USAGE,
-              "vertex %" PetscInt_FMT " belongs to no triangle: it has no place on the sphere", vertex[i]);
-    for (PetscInt k = 0; k < 3; k++) x[3 * i + k] = found[4 * i + k];
-  }
-  PetscCall(PetscFree2(sorted, which));
-  PetscCall(PetscFree(found));
+  PetscCall(EqmMeshGatherVertices(problem->mesh, num, vertices, 3, iterate->place.x, x, &missing));
+  if (missing >= 0)
+    EqmFail(problem->comm, EQM_ERR_USAGE,
+            "vertex %" PetscInt_FMT " belongs to no triangle: it has no place on the sphere", vertices[missing]);
   PetscFunctionReturn(0);
 }
 
@@ -65,7 +45,7 @@ static PetscErrorCode Fix(EqmProblem problem, EqmIterate iterate, const EqmNorma
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(points, set->fix_points, 9));
   PetscCall(Normalise(problem->comm, "-fix_points", 3, points));
-  PetscCall(PlacesOf(problem, iterate, 3, set->fix, x));
+  PetscCall(GatherImages(problem, iterate, 3, set->fix, x));
   map = EqmMoebiusThrough(x, points);
   PetscCall(EqmPlaceTransform(problem->domain, &map, &iterate->place));
   PetscFunctionReturn(0);
@@ -91,7 +71,7 @@ static PetscErrorCode Align(EqmProblem problem, EqmIterate iterate, const EqmNor
   PetscFunctionBegin;
   PetscCall(ReadLandmarks(problem->mesh, set->align, &list));
   PetscCall(PetscMalloc1(3 * list.num, &x));
-  PetscCall(PlacesOf(problem, iterate, list.num, list.vertex, x));
+  PetscCall(GatherImages(problem, iterate, list.num, list.vertex, x));
   PetscCall(EqmMoebiusAlign(list.num, x, list.other, set->align_rigid, &map, &distance));
   PetscCall(EqmPlaceTransform(problem->domain, &map, &iterate->place));
   PetscCall(EqmProblemNotify(problem,
@@ -109,7 +89,7 @@ PetscErrorCode EqmConformalFinish(EqmSolver solver)
   const EqmIterate iterate = solver->iterate;
 
   PetscFunctionBegin;
-  PetscCall(EqmIterateCenter(problem, iterate)); /* also a good place to begin the others from */
+  PetscCall(EqmIterateCenter(problem, iterate)); /* also a good starting point for the others */
   if (set->has_fix) PetscCall(Fix(problem, iterate, set));
   if (set->align[0]) PetscCall(Align(problem, iterate, set));
   if ((int)set->moebius == MOEBIUS_AREA) PetscCall(EqmMoebiusLeastArea(problem, &iterate->place));
@@ -143,7 +123,7 @@ static PetscErrorCode CheckFix(MPI_Comm comm, EqmMesh mesh, const EqmNormaliseSe
   PetscFunctionReturn(0);
 }
 
-/* Is what was asked for possible? Known before the run, not after it. */
+/* Check the options before the run. */
 static PetscErrorCode Check(MPI_Comm comm, EqmMesh mesh, const EqmNormaliseSettings *set, PetscInt num_fix,
                             PetscInt num_coordinates)
 {

@@ -1,10 +1,10 @@
-/* The options of a solver: defaults, names, help; and how what they leave open is settled. */
+/* The options of a solver: defaults, names, help; and how settings without a value get that of the formulation. */
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
 #include "solver/inner.h"
 #include <string.h>
 
-/* -1 where the method decides. Not collective. */
+/* -1: the method's default. Not collective. */
 PetscErrorCode EqmSolverSettingsDefault(EqmSolverSettings *settings)
 {
   PetscFunctionBegin;
@@ -37,11 +37,11 @@ static PetscErrorCode Check(MPI_Comm comm, const EqmSolverSettings *set)
 
 /* ---- the groups of options */
 
-/* Of a run, whatever solvers it consists of. */
+/* Options of a whole run, which may have several solvers. */
 static PetscErrorCode ReadRunOptions(EqmSolverSettings *set, PetscOptionItems *PetscOptionsObject)
 {
   PetscFunctionBegin;
-  PetscCall(EqmLinearAskOptions(PetscOptionsObject));
+  PetscCall(EqmLinearHelpOptions(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-quiet", "no progress", "EqmSolverSetFromOptions", set->quiet, &set->quiet, NULL));
   PetscCall(
       PetscOptionsReal("-wall_time",
@@ -125,7 +125,7 @@ static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOption
                              "weight of the angle energy beside the area energy; .01 gives one nearly unique, smoother "
                              "map (-1: the method's own, 0: none)",
                              "EqmSolverSetFromOptions", set->balance, &set->balance, NULL));
-  if (!solver->prefix[0]) PetscCall(ReadRunOptions(set, PetscOptionsObject)); /* one for all that runs */
+  if (!solver->prefix[0]) PetscCall(ReadRunOptions(set, PetscOptionsObject)); /* once per run, not per inner solver */
   if (!strcmp(solver->formulation->domain, "square")) PetscCall(ReadCorners(solver, PetscOptionsObject));
   if (!strcmp(solver->target, "disk"))
     PetscCall(
@@ -139,7 +139,7 @@ static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOption
 
 /* ---- methods */
 
-/* A method as the formulation has it, and then as the options have it. */
+/* Create a method with the formulation's settings, then read its options. */
 static PetscErrorCode CreateMethod(EqmSolver solver, const EqmMethodDefaults *defaults,
                                    PetscOptionItems *PetscOptionsObject, EqmMethod *method)
 {
@@ -154,7 +154,7 @@ static PetscErrorCode CreateMethod(EqmSolver solver, const EqmMethodDefaults *de
   PetscFunctionReturn(0);
 }
 
-/* The options of all methods for the target, each once: known, and listed by -help. */
+/* Read the options of all methods for the target once, so that they are known and listed by -help. */
 static PetscErrorCode ListMethodOptions(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
 {
   const EqmMethodDefaults *seen[64];
@@ -205,7 +205,7 @@ static PetscErrorCode FindObjective(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* Another objective than the target's own asks for a method that minimises any. */
+/* The default method for another objective than the target's own: one that minimises any objective. */
 static const char *MethodName(EqmSolver solver)
 {
   const char *const name = solver->settings.method;
@@ -213,7 +213,7 @@ static const char *MethodName(EqmSolver solver)
   return solver->objective != solver->formulation->objective && !strcmp(name, "auto") ? "lbfgs" : name;
 }
 
-/* Can the method minimise what is wanted? */
+/* Check that the method can minimise the chosen objective. */
 static PetscErrorCode CheckObjective(EqmSolver solver)
 {
   const EqmSolverSettings *const set = &solver->settings;
@@ -241,7 +241,7 @@ static PetscErrorCode CheckObjective(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSolverSettle(EqmSolver solver)
+PetscErrorCode EqmSolverResolveSettings(EqmSolver solver)
 {
   EqmSolverSettings *const set = &solver->settings;
   const EqmFormulation *const formulation = solver->formulation;
@@ -275,7 +275,7 @@ PetscErrorCode EqmSolverCheckLandmarkSupport(EqmSolver solver)
 PetscErrorCode EqmSolverRequireLandmarks(EqmSolver solver)
 {
   PetscFunctionBegin;
-  PetscCall(EqmSolverSettle(solver));
+  PetscCall(EqmSolverResolveSettings(solver));
   PetscCall(EqmSolverCheckLandmarkSupport(solver));
   PetscFunctionReturn(0);
 }
@@ -309,11 +309,11 @@ PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver)
                     NULL);
   PetscCall(ReadOwn(solver, PetscOptionsObject));
   PetscOptionsEnd();
-  PetscCall(EqmSolverSettle(solver));
+  PetscCall(EqmSolverResolveSettings(solver));
   PetscFunctionReturn(0);
 }
 
-/* Without a mesh: what could be asked for, and what is wrong whatever the mesh. */
+/* Without a mesh: read every option of the target, and report errors that do not depend on the mesh. */
 PetscErrorCode EqmSolverListOptions(EqmSolver solver)
 {
   const PetscBool one = (PetscBool)!EqmFormulationNext(solver->target, solver->formulation);
@@ -326,6 +326,6 @@ PetscErrorCode EqmSolverListOptions(EqmSolver solver)
   PetscCall(ListMethodOptions(solver, PetscOptionsObject));
   PetscOptionsEnd();
   PetscCall(Check(solver->comm, &solver->settings));
-  if (one) PetscCall(EqmSolverSettle(solver)); /* else the mesh will tell */
+  if (one) PetscCall(EqmSolverResolveSettings(solver)); /* else the formulation depends on the mesh */
   PetscFunctionReturn(0);
 }

@@ -44,7 +44,7 @@ PetscErrorCode EqmSolverDestroy(EqmSolver *solver)
 static PetscErrorCode StopRequested(void *context, PetscBool *stop)
 {
   PetscFunctionBegin;
-  PetscCall(EqmCheckpointAskedToStop(context, stop));
+  PetscCall(EqmCheckpointStopRequested(context, stop));
   PetscFunctionReturn(0);
 }
 
@@ -100,7 +100,7 @@ static PetscErrorCode SetSurfaceDefaults(EqmSolver solver, EqmSolver sphere)
   PetscCall(EqmSolverSetTolerances(sphere, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, by_fixed_point ? 10 : 60));
   if (by_fixed_point) PetscCall(EqmSolverSetMethod(sphere, solver->defaults.name));
   PetscCall(PetscOptionsHasName(NULL, EQM_BOUNDARY_PREFIX, "-max_it", &limited));
-  if (!by_fixed_point && !limited) /* a longer run would magnify the last digits of the input */
+  if (!by_fixed_point && !limited) /* a longer run would amplify rounding errors of the input */
     PetscCall(EqmSolverSetTolerances(sphere, PETSC_DEFAULT, .01, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscCall(EqmSolverIgnoreStopRequests(sphere));
   PetscFunctionReturn(0);
@@ -130,11 +130,11 @@ PetscErrorCode EqmSolverSetUp(EqmSolver solver)
 
   PetscFunctionBegin;
   if (solver->is_set_up) PetscFunctionReturn(0);
-  PetscCall(EqmSolverSettle(solver));
+  PetscCall(EqmSolverResolveSettings(solver));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_START));
   PetscCall(CreateProblem(solver));
   PetscCall(EqmCheckpointBegin(solver));
-  solver->problem->landmarks = solver->landmarks; /* whose arrays are the problem's from here on */
+  solver->problem->landmarks = solver->landmarks; /* the problem owns the arrays from here on */
   solver->landmarks = (EqmLandmarks){0};
   solver->settings.start.map_surface = MapSurface;
   solver->settings.start.context = solver;
@@ -166,15 +166,15 @@ static PetscErrorCode SetUpMethod(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* A mesh whose vertices are all held has one map. */
-static PetscErrorCode IsSettled(EqmSolver solver, PetscBool *settled)
+/* Without degrees of freedom the first map is the only one. */
+static PetscErrorCode HasOneMap(EqmSolver solver, PetscBool *has_one)
 {
   PetscInt num_dofs;
 
   PetscFunctionBegin;
   PetscCall(MPIU_Allreduce(&solver->problem->domain->num_dofs, &num_dofs, 1, MPIU_INT, MPI_SUM, solver->comm));
-  *settled = (PetscBool)(num_dofs == 0);
-  if (!*settled) PetscFunctionReturn(0);
+  *has_one = (PetscBool)(num_dofs == 0);
+  if (!*has_one) PetscFunctionReturn(0);
   solver->status = EQM_STATUS_CONVERGED;
   PetscCall(PetscStrncpy(solver->message, "every vertex is held: there is one map", sizeof(solver->message)));
   solver->iterate->objective = solver->iterate->totals.energy;
@@ -190,7 +190,7 @@ static PetscErrorCode Iterate(EqmSolver solver)
   PetscBool stop = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(IsSettled(solver, &stop));
+  PetscCall(HasOneMap(solver, &stop));
   if (stop) PetscFunctionReturn(0);
   PetscCall(SetUpMethod(solver));
   if (!solver->checkpoints.finished) PetscCall(EqmJudgeIteration(solver, &stop));
@@ -233,7 +233,7 @@ static PetscErrorCode IterateAgain(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* The formulation's last change, and folds mended if that can be done. */
+/* The formulation's final normalisation, then unfolding where there is a method for it. */
 static PetscErrorCode End(EqmSolver solver)
 {
   PetscFunctionBegin;

@@ -1,4 +1,4 @@
-/* What the files of this folder know of a solver; nobody else does. */
+/* The fields of a solver, private to this folder. */
 #ifndef EQM_SOLVER_PRIVATE_H
 #define EQM_SOLVER_PRIVATE_H
 
@@ -26,14 +26,14 @@ typedef struct {
 
 struct _p_EqmSolver {
   MPI_Comm comm;
-  EqmMesh mesh; /* NULL where options are only to be listed */
+  EqmMesh mesh; /* NULL where options are only listed */
   char target[16], prefix[32];
   EqmSolverSettings settings;
   const EqmFormulation *formulation;
   const EqmObjective *objective;
   EqmMethodDefaults defaults; /* of the method for the formulation */
   const EqmStartType *start;
-  EqmMethod method; /* NULL until the settings are settled */
+  EqmMethod method; /* NULL before EqmSolverResolveSettings */
   PetscBool is_set_up;
 
   EqmProblem problem;
@@ -59,8 +59,8 @@ struct _p_EqmSolver {
 
 /* ---- options.c */
 PETSC_INTERN PetscErrorCode EqmSolverSettingsDefault(EqmSolverSettings *settings);
-/* Look up method and start, and take what is left open as the formulation has it. Errors: EQM_ERR_USAGE. Collective. */
-PETSC_INTERN PetscErrorCode EqmSolverSettle(EqmSolver solver);
+/* Look up method and start, and set unset values to the formulation's defaults. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverResolveSettings(EqmSolver solver);
 /* Read every option that the target could have. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverListOptions(EqmSolver solver);
 /* ---- first_map.c: the first map: one that was given, or a start's. Collective. */
@@ -70,7 +70,7 @@ PETSC_INTERN PetscErrorCode EqmHistoryReserve(EqmSolver solver, PetscInt rows);
 /* Add a row for the present map and call the monitor. Collective. */
 PETSC_INTERN PetscErrorCode EqmHistoryAddRow(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverCallMonitor(EqmSolver solver, EqmMonitorEvent event, const char *text);
-/* Print a line for people; a problem's `notify`, whose context is the solver. Collective. */
+/* Pass a line of text to the monitor; a problem's `notify`, whose context is the solver. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverNotify(void *solver, const char *text);
 PETSC_INTERN PetscErrorCode EqmSolverNotifyUnfolded(EqmSolver solver, const char *when);
 /* Prefix of the options of the surface's map in the ball's start. */
@@ -78,7 +78,7 @@ PETSC_INTERN PetscErrorCode EqmSolverNotifyUnfolded(EqmSolver solver, const char
 /* ---- intrinsic.c: the second attempt of EqmSolverSolve. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverStraighten(EqmSolver solver);
 
-/* Refuse landmarks for a method that has no use for them, known once the settings are settled. Errors: EQM_ERR_USAGE.
+/* Refuse landmarks for a method without them, after EqmSolverResolveSettings. Errors: EQM_ERR_USAGE.
    Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverCheckLandmarkSupport(EqmSolver solver);
 

@@ -1,4 +1,4 @@
-/* What a solver is set to, and how it went. */
+/* Print a solver's settings and result. */
 #include "solver/solver_private.h"
 
 static PetscErrorCode ViewResult(EqmSolver solver, PetscViewer viewer)

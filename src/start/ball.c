@@ -1,5 +1,5 @@
-/* First maps of solids to the ball (003 section 4): the surface goes to the sphere by a map that is handed in, the
-   interior follows by volumetric stretch energy minimisation with the boundary held. */
+/* First maps of solids to the ball (003 section 4): the surface is mapped to the sphere by the caller's function, the
+   interior by volumetric stretch energy minimisation with the boundary held. */
 #include "start/start.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
@@ -89,8 +89,8 @@ static PetscErrorCode PlaceMesh(EqmProblem problem, PetscBool scaled, EqmPlace *
   PetscFunctionReturn(0);
 }
 
-/* Factorisations and solves of the surface's map count as the run's; its energy is another one, and evaluations of it
-   do not. */
+/* Factorisations and solves of the surface's map are counted for the run; evaluations, which are of another energy, are
+   not. */
 static PetscErrorCode CountWork(EqmLedger from, EqmLedger to)
 {
   EqmWork *part, *all;
@@ -105,7 +105,7 @@ static PetscErrorCode CountWork(EqmLedger from, EqmLedger to)
   PetscFunctionReturn(0);
 }
 
-/* Boundary vertices from where the solid's surface is to the sphere, the others stay. */
+/* Map the boundary vertices to the sphere; interior vertices are not moved. */
 static PetscErrorCode PlaceBoundary(EqmProblem problem, const EqmStartOptions *options, EqmPlace *place)
 {
   EqmSurface surface;
@@ -149,7 +149,7 @@ static PetscErrorCode TurnMirrored(EqmProblem problem, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
-/* Error that each solve leaves of the one that it finds, where the solver is an iteration. */
+/* Relative tolerance of iterative solves: the error after a solve over that before it. */
 static const PetscReal start_tolerance = 1e-3;
 
 static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
@@ -168,7 +168,7 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
     if (k == 0) PetscCall(PlaceBoundary(problem, options, &iterate->place));
     PetscCall(EqmHeldImprove(problem, weights, group, 3, start_tolerance, iterate->place.x));
     if (k == 0) PetscCall(TurnMirrored(problem, iterate));
-    PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, (PetscBool)(k > 0))); /* from image to image little changes */
+    PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, (PetscBool)(k > 0))); /* successive images differ little */
   }
   PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, PETSC_FALSE));
   PetscCall(PetscFree2(weights, group));

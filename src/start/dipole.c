@@ -1,7 +1,7 @@
 /* The linear conformal map by a dipole (Angenent, Haker, Tannenbaum and Kikinis 1999): L z = b, with b zero but at the
-   corners of one triangle. Conjugate gradients with the metric of conformal maps, (L + M)^-1, as preconditioner: they
-   need a dozen steps, as the eigenvalues of the product lie between those of a sphere's first modes and one, and the
-   map's one factor is that which the minimisation needs anyway. */
+   corners of one triangle. Conjugate gradients with the metric of conformal maps, (L + M)^-1, as preconditioner: a
+   dozen iterations suffice, as the eigenvalues of the preconditioned matrix lie between those of the sphere's lowest
+   modes and one; and the one factor is that of the minimisation's metric. */
 #include "start/start.h"
 #include "mesh/mesh_private.h"
 #include "problem/metric.h"

@@ -8,8 +8,8 @@
 /* Time step of the smoothing for a surface of area one; the sphere's slowest modes decay at rate 8 pi. */
 #define TIME_STEP .01
 
-/* Sum of the normals of the triangles around each vertex, weighted by their areas; where they cancel, away from the
-   middle of the mesh. */
+/* Sum of the normals of the triangles around each vertex, weighted by their areas; where they cancel, the direction
+   from the mesh's centroid. */
 static PetscErrorCode SumNormals(EqmMesh mesh, PetscReal *x)
 {
   PetscReal sum[3] = {0., 0., 0.}, middle[3];

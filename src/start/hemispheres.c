@@ -101,7 +101,7 @@ static Crossing *FindCrossing(const Cut *cut, PetscInt below, PetscInt above)
   return bsearch(&wanted, cut->crossing, (size_t)cut->count, sizeof(Crossing), CompareCrossings);
 }
 
-/* The curve has what is below on its left: in triangle (a, b, c) with a alone on its side it runs from edge ab to edge
+/* The lower side is on the curve's left: in triangle (a, b, c) with a alone on its side it runs from edge ab to edge
    ca if a is above, else from ca to ab. */
 static Crossing CrossCell(const Cut *cut, PetscInt cell)
 {
@@ -115,8 +115,7 @@ static Crossing CrossCell(const Cut *cut, PetscInt cell)
   }
   const PetscInt a = mesh->cells[3 * cell + alone];
   const PetscBool below = IsBelow(cut, a);
-  for (PetscInt k = 0; k < 2;
-       k++) { /* the edge that the curve comes through first is that to the next corner, if a is above */
+  for (PetscInt k = 0; k < 2; k++) { /* if a is above, the curve enters through the edge to the next corner */
     const PetscInt other = mesh->cells[3 * cell + (alone + 1 + (below ? 1 - k : k)) % 3];
     edge[k][0] = below ? a : other;
     edge[k][1] = below ? other : a;
@@ -231,9 +230,9 @@ static PetscErrorCode ChooseLevel(Cut *cut)
   PetscFunctionReturn(0);
 }
 
-/* The pull of the circle: for every edge that the curve crosses, both ends hang on the crossing's place on the circle.
-   Every inner edge is seen from two cells with half its weight. */
-static PetscErrorCode PullOfCircle(const Cut *cut, PetscReal *columns)
+/* Right-hand side from the held circle: an edge that the curve crosses joins each of its ends to the crossing's point
+   on the circle. Interior edges are visited from two cells, with half of the weight each. */
+static PetscErrorCode CircleRightHandSide(const Cut *cut, PetscReal *columns)
 {
   const EqmMesh mesh = cut->problem->mesh;
   const PetscInt n = mesh->num_owned;
@@ -246,15 +245,16 @@ static PetscErrorCode PullOfCircle(const Cut *cut, PetscReal *columns)
     if (IsBelow(cut, i) == IsBelow(cut, j) || (i >= n && j >= n)) continue;
     const Crossing *const crossing = FindCrossing(cut, (PetscInt)cut->input[low], (PetscInt)cut->input[high]);
     for (PetscInt c = 0; c < 2; c++) {
-      const PetscReal pull = .5 * (c == 0 ? PetscCosReal(crossing->angle) : PetscSinReal(crossing->angle));
-      if (low < n) columns[c * n + low] += pull;
-      if (high < n) columns[c * n + high] += pull;
+      const PetscReal value = .5 * (c == 0 ? PetscCosReal(crossing->angle) : PetscSinReal(crossing->angle));
+      if (low < n) columns[c * n + low] += value;
+      if (high < n) columns[c * n + high] += value;
     }
   }
   PetscFunctionReturn(0);
 }
 
-/* Both disks in one system, which the curve takes apart; then each onto its hemisphere by stereographic projection. */
+/* Both disks in one linear system, which the curve decouples; then each onto its hemisphere by stereographic
+   projection. */
 static PetscErrorCode MapHemispheres(Cut *cut, EqmIterate iterate, const PetscReal *weights, signed char *group)
 {
   const EqmProblem problem = cut->problem;
@@ -264,7 +264,7 @@ static PetscErrorCode MapHemispheres(Cut *cut, EqmIterate iterate, const PetscRe
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2 * n, &columns));
   for (PetscInt v = 0; v < problem->mesh->num_local; v++) group[v] = IsBelow(cut, v) ? 0 : 1;
-  PetscCall(PullOfCircle(cut, columns));
+  PetscCall(CircleRightHandSide(cut, columns));
   PetscCall(EqmGroupFactor(problem, weights, group, NULL));
   PetscCall(EqmGroupSolve(problem, 2, columns));
   for (PetscInt v = 0; v < n; v++) {

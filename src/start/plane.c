@@ -33,7 +33,8 @@ PetscErrorCode EqmStepToFold(EqmProblem problem, const EqmPlace *place, const Pe
   PetscFunctionReturn(0);
 }
 
-/* Towards the harmonic map of L_S(f) with the boundary held, but not through a fold (docs/methods.md, Starts). */
+/* A step towards the harmonic map of L_S(f) with the boundary held, shortened if `guarded` before a cell folds
+   (docs/methods.md, Starts). */
 static PetscErrorCode FixedPointStep(EqmProblem problem, EqmIterate iterate, PetscBool guarded, PetscReal *weights,
                                      EqmPlace *to)
 {

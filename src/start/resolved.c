@@ -1,12 +1,13 @@
-/* Angle-preserving maps of closed surfaces with thin limbs. A leg of length l and girth g shrinks by exp(-2 pi l / g):
-   triangles of area 1e-20 on the sphere are not rare, and with 16 digits no determinant of such corners has a sign that
-   does not depend on the order of its computation. */
+/* Angle-preserving maps of closed surfaces with thin limbs. A limb of length l and girth g shrinks by exp(-2 pi l / g):
+   triangles of area 1e-20 on the sphere are common, and in double precision the sign of their determinants depends on
+   rounding. */
 #include "start/start.h"
 #include "domain/domain_private.h"
 
-/* Limbs are given a conductivity that falls towards their tips, as a power of the scale at which the conformal map has
-   them, from this scale (its logarithm) down. Along a limb a harmonic map then shrinks less: with the power 2 lambda by
-   sqrt(lambda^2 + 1) - lambda of what it did, per length. Weights remain positive, so there is still nothing to fold.
+/* Limbs get a conductivity that falls towards their tips, a power of the conformal map's local scale, where the
+   logarithm of the scale is below `first_scale`. Along a limb the harmonic map then shrinks less: with the power 2
+   lambda the exponent is multiplied by sqrt(lambda^2 + 1) - lambda. Weights remain positive, so that Tutte's theorem
+   still holds.
  */
 static const PetscReal first_scale = -6., power_step = .1;
 
@@ -40,7 +41,7 @@ static PetscErrorCode FindScales(EqmProblem problem, EqmIterate iterate, PetscRe
 }
 
 /* Solve for one cap, then the opposite one, and so on, for as long as the Dirichlet energy of the angle weights falls:
-   the linear map's faults, around its pinned triangle, are gone after a few. */
+   a few rounds remove the errors of the linear map around its pinned triangle. */
 static PetscErrorCode ImproveByCaps(EqmProblem problem, EqmIterate iterate)
 {
   enum { MOST_STEPS = 20 };

@@ -124,7 +124,7 @@ PetscErrorCode EqmSphereLinear(EqmProblem problem, EqmIterate iterate, PetscBool
   PetscFunctionReturn(0);
 }
 
-/* ---- the linear map, and what begins with it */
+/* ---- the linear map, and starts that continue from it */
 
 static PetscErrorCode RunLinear(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {

@@ -1,22 +1,22 @@
 /* First maps: the starts that -start names, by the family of domains that they map to.
 
-   A start is one function, with a name and a line for people; EqmStartRegister makes it known. */
+   A start is one function with a name and a one-line description; EqmStartRegister registers it. */
 #ifndef EQM_START_H
 #define EQM_START_H
 
 #include "problem/problem.h"
 
-/* Which first maps there are to choose from. */
+/* The sets of starts: each formulation has one. */
 typedef enum { EQM_STARTS_PLANE, EQM_STARTS_SPHERE, EQM_STARTS_BALL } EqmStartFamily;
 
 /* Map a closed surface to the sphere: x, three per local vertex of `surface`, ghosts up to date; `folds` of the map.
-   What the ball's start is handed. Collective. */
+   A callback of the ball's start. Collective. */
 typedef PetscErrorCode (*EqmMapSurface)(void *context, EqmMesh surface, PetscReal *x, PetscInt64 *folds);
 
-/* What steers a start. */
+/* Settings of a start. */
 typedef struct {
   char name[32];                 /* empty: the target's own for the method */
-  PetscInt steps;                /* fixed-point steps after the first map; -1: as the start has it */
+  PetscInt steps;                /* fixed-point steps after the first map; -1: the start's default */
   PetscBool center;              /* sphere: bring the mass centre to the sphere's by a Moebius map at the end */
   PetscBool anisotropic_scaling; /* ball: turn and scale the solid to fill a cube first (003 (11)) */
   EqmMapSurface map_surface;     /* ball */
@@ -27,12 +27,12 @@ typedef struct {
   EqmStartFamily family;
   const char *name, *purpose;
   PetscInt steps;                                                         /* unless the options say otherwise */
-  PetscErrorCode (*run)(EqmProblem, EqmIterate, const EqmStartOptions *); /* options->steps is settled */
+  PetscErrorCode (*run)(EqmProblem, EqmIterate, const EqmStartOptions *); /* options->steps is not negative */
 } EqmStartType;
 
-/* Make a start known; `type` must outlive the program's use of it. Not collective. */
+/* Register a start; `type` must outlive the program's use of it. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmStartRegister(const EqmStartType *type);
-/* The start of a name. `place` is the target's word in the message. Errors: EQM_ERR_USAGE. Collective. */
+/* The start of a name. `place` names the target in the error message. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmStartFind(MPI_Comm comm, EqmStartFamily family, const char *place, const char *name,
                                          const EqmStartType **type);
 /* The names of all starts of a family, separated by commas. Not collective. */
@@ -45,7 +45,7 @@ PETSC_INTERN PetscErrorCode EqmStartSetFromOptions(EqmStartFamily family, EqmSta
 PETSC_INTERN PetscErrorCode EqmStartRun(const EqmStartType *type, EqmProblem problem, EqmIterate iterate,
                                         const EqmStartOptions *options);
 
-/* The starts of this folder, each in a file with its like. */
+/* The starts of this folder. */
 PETSC_INTERN const EqmStartType EqmStartPlaneHarmonic, EqmStartPlaneFixedPoint, EqmStartPlaneTutte,
     EqmStartPlaneGuarded, EqmStartPlaneArcLength, EqmStartSphereLinearType, EqmStartSphereFixedPoint,
     EqmStartSphereDescending, EqmStartSphereGuarded, EqmStartSphereConformal, EqmStartSphereResolved,

@@ -1,8 +1,8 @@
-/* Folds of angle-preserving maps to the disk. Where two angles that face each other add up to more than pi the weight
-   of their edge is negative, and the harmonic map may fold. With a little more than nothing in its place all weights
-   are positive, and what is harmonic for them folds nowhere, as the boundary is strictly convex (Tutte 1963, Floater
-   1997). Angles pay for it: only edges around folds are changed, then those around the folds that are left, and at the
-   last all of them. */
+/* Folds of angle-preserving maps to the disk. Where the two angles opposite to an edge add up to more than pi the
+   weight of the edge is negative, and the harmonic map may fold. If such weights are replaced by a small positive
+   number, the harmonic map for the new weights does not fold, as the boundary is strictly convex (Tutte 1963, Floater
+   1997). As this distorts angles, only edges around folds are changed, then those around the folds that remain, and in
+   the last round all of them. */
 #include "unfold/unfold.h"
 #include "mesh/mesh_private.h"
 
@@ -15,7 +15,7 @@ typedef struct {
 
 typedef struct {
   Side *side;         /* of all edges, the two of an edge one after the other */
-  PetscReal *weights; /* positive as far as need be */
+  PetscReal *weights; /* cotangents, those of changed edges raised */
   PetscReal *marked;  /* per local vertex: 1 where it is near a fold, else 0 */
 } Unfold;
 

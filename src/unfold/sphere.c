@@ -1,6 +1,6 @@
 /* Bijectivity repair on the sphere (001 section 6.2, corrected): a folded triangle is turned to the south pole, the cap
-   round it is made a mean-value map of its rim, which straightens what it can, and so on with the next. Caps alternate
-   between large and small. */
+   around it is replaced by the mean-value map of its rim; then the next folded triangle. Caps alternate between large
+   and small. */
 #include "unfold/unfold.h"
 #include "mesh/mesh_private.h"
 #include "linalg/linalg.h"
@@ -11,7 +11,7 @@ enum { MOST_ROUNDS = 40 };
 
 typedef struct {
   EqmMesh mesh;
-  PetscReal *z;   /* places seen from the cap's far side, two per local vertex */
+  PetscReal *z;   /* stereographic images from the pole opposite to the cap, two per local vertex */
   PetscBool *cap; /* per local vertex: is it solved for? */
   Mat matrix;
   EqmLu lu;
@@ -68,11 +68,11 @@ static void MeanValueWeights(const PetscReal *a, const PetscReal *b, const Petsc
   const PetscReal angle = PetscAbsReal(PetscAtan2Real(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]));
   const PetscReal tangent = PetscMax(1e-8, PetscMin(PetscTanReal(.5 * angle), 1e8));
 
-  *to_b = tangent / PetscMax(lu, SHORTEST); /* corners that coincide pull hard, not infinitely */
+  *to_b = tangent / PetscMax(lu, SHORTEST); /* keeps the weight finite where corners coincide */
   *to_c = tangent / PetscMax(lv, SHORTEST);
 }
 
-/* Rows sum to zero and have diagonal one: weights spread over sixteen orders of magnitude, their shares do not. */
+/* Rows are scaled to diagonal one and sum to zero: unscaled weights spread over sixteen orders of magnitude. */
 static PetscErrorCode FillMatrix(Unfold *u)
 {
   const EqmMesh mesh = u->mesh;
@@ -111,8 +111,7 @@ static PetscErrorCode SolveCap(Unfold *u)
   work->factorizations++;
   for (PetscInt k = 0; k < 2; k++) {
     PetscScalar *value;
-    PetscCall(
-        VecGetArrayWrite(u->b, &value)); /* rows of the cap sum to zero, those of held vertices say where they are */
+    PetscCall(VecGetArrayWrite(u->b, &value)); /* right-hand side: zero in the cap, the images of held vertices */
     for (PetscInt v = 0; v < mesh->num_owned; v++) value[v] = u->cap[v] ? 0. : u->z[2 * v + k];
     PetscCall(VecRestoreArrayWrite(u->b, &value));
     PetscCall(EqmLuSolve(u->lu, u->b, u->x));
@@ -148,7 +147,7 @@ static PetscErrorCode FirstFold(EqmProblem problem, EqmIterate iterate, const Pe
   PetscFunctionReturn(0);
 }
 
-/* Flatten the cap of stereographic radius r round `center`, solve, and put it back. */
+/* Project the cap of stereographic radius r around `center` to the plane, solve, project back. */
 static PetscErrorCode StraightenCap(EqmProblem problem, EqmIterate iterate, Unfold *u, const PetscReal center[3],
                                     PetscReal r)
 {

@@ -10,7 +10,7 @@ PETSC_INTERN PetscErrorCode EqmDiskUnfold(EqmProblem problem, EqmIterate iterate
                                           PetscInt64 *after);
 PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
                                             PetscInt64 *after);
-/* Requests to stop are answered between rounds (EqmProblemStopRequested). */
+/* Requests to stop are checked between rounds (EqmProblemStopRequested). */
 PETSC_INTERN PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
                                           PetscInt64 *after);
 

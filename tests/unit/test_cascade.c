@@ -75,7 +75,7 @@ static PetscErrorCode CaseMap(const Case *test, PetscReal epsilon, EqmLevelMap *
   PetscCall(PetscArraycpy(map->x, test->x, map->dim * map->level->num_vertices));
   PetscCall(EqmLevelMapSetMotions(map, test->target));
   map->epsilon = epsilon;
-  EqmLevelMapLook(map, map->x);
+  EqmLevelMapEvaluate(map, map->x);
   PetscFunctionReturn(0);
 }
 
@@ -170,7 +170,7 @@ static PetscErrorCode TestRelaxation(const char *shape, EqmCascadeTarget target)
   PetscCall(EqmRelaxLevel(&map, &stars, 300));
   PetscCall(SlopeNorm(&map, &after));
   CHECK(after < 1e-3 * before, "the slope falls from %g to %g only", (double)before, (double)after);
-  CHECK(EqmLevelMapLook(&map, map.x).folds == 0, "folds");
+  CHECK(EqmLevelMapEvaluate(&map, map.x).folds == 0, "folds");
   PetscCall(EqmLevelStarsDestroy(&stars));
   PetscCall(EqmLevelMapDestroy(&map));
   PetscCall(CaseDestroy(&test));
