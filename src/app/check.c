@@ -1,6 +1,6 @@
 /* equimap check MESH: what the mesh is, its defects, and each command's verdict. */
 #include "app.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/atomicfile.h"
 #include "intake/intake.h"
 #include "mesh/handles.h"

@@ -1,5 +1,5 @@
 #include "check_prepare.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "mesh/target.h"
 #include "prepare/prepare.h"
 #include <string.h>

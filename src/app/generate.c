@@ -1,6 +1,6 @@
 /* equimap generate SHAPE -n N -o OUT: test surfaces and solids of any size. */
 #include "app.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 
 typedef struct {
   PetscInt n, seed;

@@ -1,6 +1,6 @@
 /* equimap disk | square | sphere MESH -o OUT: read, diagnose, distribute, minimise, measure, write. */
 #include "app.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/stop.h"
 #include "format/format.h"
 #include "intake/intake.h"

@@ -1,5 +1,5 @@
 /* Vertices on the unit sphere that move by their spherical coordinates, polar angle and azimuth (003 (4), (5)). */
-#include "domain/domain_private.h"
+#include <equimap/domain.h>
 
 /* 003 (4). */
 static void FromAngles(const PetscReal angle[2], PetscReal x[3])

@@ -1,5 +1,5 @@
 /* Vertices without a constraint. */
-#include "domain/domain_private.h"
+#include <equimap/domain.h>
 
 static void Frame(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal *frame)
 {

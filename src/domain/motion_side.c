@@ -1,5 +1,5 @@
 /* Vertices that slide along a side of the unit square, and those at its corners (002 section 4.1). */
-#include "domain/domain_private.h"
+#include <equimap/domain.h>
 
 static void FrameX(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal *frame)
 {

@@ -1,5 +1,5 @@
 /* Vertices on the unit sphere, in frames of their own that parallel transport carries along. */
-#include "domain/domain_private.h"
+#include <equimap/domain.h>
 #include "geometry/simplex.h"
 
 static void Frame(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal *frame)

@@ -1,6 +1,6 @@
 /* EqmSoupReadDensity: one positive number per cell. */
 #include "format.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "hdf5.h"
 #include "input.h"
 

@@ -1,6 +1,5 @@
 /* The end of a mesh that was made: which cells it has, polygons cut, texture coordinates per corner. */
 #include "builder.h"
-#include "mesh/mesh_private.h"
 
 #include <stdio.h>
 

@@ -2,7 +2,6 @@
    geometry of the volume behind them, which goes on into a FreeSurfer file that the surface is written to. And its
    curvature files: a number per vertex. */
 #include "builder.h"
-#include "mesh/mesh_private.h"
 #include "format.h"
 #include "metadata.h"
 #include "scalar.h"

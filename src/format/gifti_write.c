@@ -1,7 +1,6 @@
 /* GIFTI: a surface of two arrays, points and triangles, and beside it a file with a shape per vertex field, since
    Connectome Workbench takes no surface with more. The format has single precision only. */
 #include "encoding.h"
-#include "mesh/mesh_private.h"
 #include "writers.h"
 #include "input.h"
 #include "metadata.h"

@@ -1,6 +1,5 @@
 /* MSH as text, version 2.2, which every program reads; fields as node and element data. */
 #include "writers.h"
-#include "mesh/mesh_private.h"
 
 /* A field as $NodeData or $ElementData. Gmsh has fields of 1, 3 and 9 numbers per node or element; missing ones are
  * zero. */

@@ -1,7 +1,7 @@
 /* The mesh part of our HDF5 files: /mesh/vertices, n x 3 float64, and /mesh/cells, m x 3 or 4 int64. All ranks read and
    write their slabs together. */
 #include "hdf5.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "format.h"
 #include "h5/h5.h"
 

@@ -1,5 +1,5 @@
 #include "image.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/rows.h"
 #include "format.h"
 #include "input.h"

@@ -1,7 +1,6 @@
 /* Medit's .mesh, as text: sections of a keyword, a count and lines that end with a reference number. Vertices count
    from 1. Sections that are no vertices, triangles or tetrahedra are passed over. */
 #include "format.h"
-#include "mesh/mesh_private.h"
 #include "medit.h"
 
 #include <ctype.h>

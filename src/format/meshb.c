@@ -1,7 +1,6 @@
 /* Medit's .meshb, the binary form, versions 1 to 4, of either byte order: blocks of a keyword's code, the offset of the
    next block, a count and records. */
 #include "format.h"
-#include "mesh/mesh_private.h"
 #include "medit.h"
 #include "scalar.h"
 

@@ -1,7 +1,6 @@
 /* Wavefront OBJ: `v x y z`, `vt u v` and `f a/b/c ...` lines; everything else (normals, groups, materials) is skipped.
  */
 #include "builder.h"
-#include "mesh/mesh_private.h"
 #include "format.h"
 #include "seam.h"
 

@@ -1,7 +1,6 @@
 /* OFF of Geomview, ASCII: also with colours, normals and texture coordinates (COFF, NOFF, STOFF and their mixtures),
    which are passed over. */
 #include "builder.h"
-#include "mesh/mesh_private.h"
 #include "format.h"
 
 #include <string.h>

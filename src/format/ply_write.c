@@ -1,7 +1,6 @@
 /* PLY, binary little endian, with fields as properties. Texture coordinates become s and t of the vertices, or, where
    there are seams, a list texcoord of the faces, as MeshLab has it. */
 #include "writers.h"
-#include "mesh/mesh_private.h"
 #include "input.h"
 #include "scalar.h"
 #include "seam.h"

@@ -1,6 +1,5 @@
 /* What a format cannot hold is refused before anything is written. */
 #include "format.h"
-#include "mesh/mesh_private.h"
 
 #include <stdio.h>
 

@@ -1,7 +1,6 @@
 /* STL, ASCII and binary. The file repeats a vertex in every triangle; equal coordinates are taken for one vertex,
    numbered in the order of first appearance. */
 #include "builder.h"
-#include "mesh/mesh_private.h"
 #include "format.h"
 #include "scalar.h"
 #include "weld.h"

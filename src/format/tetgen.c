@@ -2,7 +2,6 @@
    first vertex says. Either file is named; the parser takes the bytes of both with a form feed between them. Triangle's
    files for the plane look alike and are read, too. */
 #include "builder.h"
-#include "mesh/mesh_private.h"
 #include "format.h"
 
 #include <errno.h>

@@ -1,7 +1,6 @@
 /* Legacy VTK as text, version 3.0, which every program reads: triangles as POLYDATA, tetrahedra as UNSTRUCTURED_GRID.
  */
 #include "writers.h"
-#include "mesh/mesh_private.h"
 #include "input.h"
 
 static void PrintCells(EqmAtomicFile *file, const EqmSerialMesh *mesh)

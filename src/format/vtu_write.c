@@ -1,6 +1,5 @@
 /* VTU with appended base64 data: well-formed XML that every VTK program reads, all doubles as they are. */
 #include "encoding.h"
-#include "mesh/mesh_private.h"
 #include "writers.h"
 #include "input.h"
 #include "scalar.h"

@@ -1,6 +1,6 @@
 /* EqmSoupWrite, and the one-rank writer below it. */
 #include "format.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "input.h"
 #include "base/nearest.h"
 

@@ -1,6 +1,5 @@
 /* The mesh of a run that is continued: the named one, or the copy beside the checkpoint. */
 #include "intake/intake.h"
-#include "mesh/mesh_private.h"
 #include "base/lookup.h"
 #include "store/keptmesh.h"
 

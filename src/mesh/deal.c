@@ -1,6 +1,6 @@
 /* A mesh that one rank holds, dealt to all in slabs, and gathered again. */
 #include "mesh/build.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include <string.h>
 
 enum { TAG_VERTICES = 1, TAG_CELLS = 2 };

@@ -1,6 +1,6 @@
 /* What is this mesh, and what is wrong with it? */
 #include "mesh/diagnose.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 
 /* Sums over all vertices' links. */
 typedef struct {

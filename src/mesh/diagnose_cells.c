@@ -1,6 +1,6 @@
 /* Cells one by one: existing, distinct and flat vertices, twins, size and quality, tetrahedra turned inside out. */
 #include "mesh/diagnose.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "geometry/simplex.h"
 
 /* A cell of a lower quality than this is flat: rounding alone decides its measure. */

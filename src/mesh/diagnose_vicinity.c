@@ -1,6 +1,6 @@
 /* Collect the cells around each rank's slab of vertices. */
 #include "mesh/diagnose.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "mesh/build.h"
 #include "base/exchange.h"
 #include "base/rows.h"

@@ -1,6 +1,6 @@
 /* How far the vertices extend: products of lengths must neither overflow nor vanish. */
 #include "mesh/build.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 
 /* Exponents of ten between which squares of areas (volumes) and their quotients are numbers. */
 enum { MOST_OF_SURFACE = 60, MOST_OF_SOLID = 40 };

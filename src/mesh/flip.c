@@ -7,7 +7,7 @@
    are sent to their edges; edges that are not Delaunay request both their triangles; a triangle approves one request;
    edges with two approvals flip. */
 #include "mesh/flip.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/exchange.h"
 #include "geometry/simplex.h"
 

@@ -1,6 +1,6 @@
 /* Before the first flip: triangles by the lengths of their edges, and edges with numbers of their own. */
 #include "mesh/flip.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 

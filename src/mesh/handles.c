@@ -1,5 +1,5 @@
 #include "mesh/handles.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/sets.h"
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* Noise for studies of stability (001 section 6.5): every vertex moves along its normal by a random length. */
 #include "mesh/diagnose.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "mesh/build.h"
 #include "base/random.h"
 #include "geometry/simplex.h"

@@ -1,6 +1,6 @@
 /* Which rank owns which vertex: METIS on the vertex graph. */
 #include "mesh/build.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "mesh/diagnose.h"
 
 /* The graph rows of this rank's slab of vertices, neighbours in input numbering. */

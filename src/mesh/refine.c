@@ -1,6 +1,6 @@
 /* Uniform refinement: every triangle into four, every tetrahedron into eight. */
 #include "mesh/subdivide.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 
 /* Children by their vertices: 0 .. cs-1 the corners, then the edges in the order of EqmCellEdge. */
 static const int triangle_children[4][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}, {5, 3, 4}};

@@ -1,7 +1,7 @@
 /* Repair what can be repaired without a choice: duplicates, repeated vertices, orientation, cells with all vertices on
    the boundary. */
 #include "mesh/subdivide.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 
 /* What is done to a cell with all new vertices known. */
 typedef struct {

@@ -1,6 +1,6 @@
 /* The mesh of a file, dealt to the ranks in contiguous slabs of vertices and of cells. */
 #include "mesh/build.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/checksum.h"
 #include <string.h>
 

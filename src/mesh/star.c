@@ -1,6 +1,6 @@
 /* Bring to every rank the cells around the vertices it owns. */
 #include "mesh/build.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 

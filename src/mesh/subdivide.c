@@ -1,6 +1,6 @@
 /* New vertices on edges, and a new soup from an old one, added vertices and children of cells. */
 #include "mesh/subdivide.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 

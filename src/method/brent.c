@@ -1,7 +1,6 @@
 /* Brent's bounded minimisation (Algorithms for Minimization without Derivatives, 1973, chapter 5): parabolas, and
    golden sections where these do not help. */
 #include "method/brent.h"
-#include "mesh/mesh_private.h"
 
 enum { MOST_TRIALS = 100 };
 static const PetscReal tolerance = 1e-4;

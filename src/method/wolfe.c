@@ -1,6 +1,5 @@
 /* Strong Wolfe conditions by bracketing and cubic interpolation (Nocedal and Wright, Algorithms 3.5 and 3.6). */
 #include "method/wolfe.h"
-#include "mesh/mesh_private.h"
 
 static const PetscReal decrease = 1e-4, flatness = .9; /* c1 and c2 */
 enum { MOST_TRIALS = 20 };

@@ -1,6 +1,5 @@
 /* Read a result file for a report. */
 #include "picture/picture.h"
-#include "mesh/mesh_private.h"
 #include "h5/h5.h"
 #include "store/store.h"
 #include <math.h>

@@ -1,7 +1,6 @@
 /* The page: headings, pictures, colour bars, charts, figures. */
 #ifdef EQM_HAVE_CAIRO
 #include "picture/page.h"
-#include "mesh/mesh_private.h"
 #include <math.h>
 #include <string.h>
 

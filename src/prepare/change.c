@@ -1,5 +1,5 @@
 #include "prepare/step.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 
 PetscErrorCode EqmChangeAssemble(EqmChange *change, EqmVertexGroup *added, EqmCellList *list)
 {

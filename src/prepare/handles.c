@@ -1,7 +1,7 @@
 /* Cut small handles, the topological noise of scans (Guskov and Wood 2001), along a short loop each, and fill both
    sides. The whole mesh is gathered on rank 0 for it, so this is for meshes of a limited size. */
 #include "prepare/step.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "mesh/handles.h"
 #include <string.h>
 

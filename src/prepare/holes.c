@@ -1,6 +1,6 @@
 /* Fill holes: boundary loops, which are short, are gathered on one rank and filled there one by one. */
 #include "prepare/step.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/exchange.h"
 #include "mesh/target.h"
 

@@ -1,6 +1,6 @@
 /* Keep one piece of a mesh. */
 #include "prepare/step.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/rows.h"
 #include "geometry/simplex.h"
 

@@ -1,6 +1,6 @@
 /* The table of steps, and the loop over them. */
 #include "prepare/step.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/rows.h"
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Remove duplicate cells, cut a surface apart where it is not a manifold, reorient cells that disagree with their
    neighbours. */
 #include "prepare/step.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/exchange.h"
 #include "base/sets.h"
 

@@ -1,6 +1,6 @@
 /* Join boundary vertices at the same position: seams that programs cut for their texture coordinates. */
 #include "prepare/step.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
 #include "base/sets.h"

@@ -1,6 +1,6 @@
 /* Read fields: from the mesh itself, its HDF5 file, or a CSV file. */
 #include "register/field.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "format/table.h"
 #include "h5/h5.h"
 #include "base/rows.h"

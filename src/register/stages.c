@@ -1,7 +1,6 @@
 /* A registration as a long run: its minimisations, each with a checkpoint of its own, copies of its meshes beside them,
    requests to stop between its steps. */
 #include "register/registration.h"
-#include "mesh/mesh_private.h"
 #include "solver/inner.h"
 #include "store/keptmesh.h"
 #include <libgen.h>

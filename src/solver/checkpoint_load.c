@@ -1,6 +1,5 @@
 /* Choose and load the checkpoint that a run continues from. */
 #include "solver/solver_private.h"
-#include "mesh/mesh_private.h"
 #include "solver/inner.h"
 #include "base/lookup.h"
 #include "base/quiet.h"

@@ -1,5 +1,6 @@
 /* The table of formulations: energy x domain, and the methods that solve them. */
-#include "solver/solver_private.h"
+#include "solver/formulation.h"
+#include "solver/normalise.h"
 #include "mesh/mesh_private.h"
 #include "base/nearest.h"
 #include "unfold/unfold.h"

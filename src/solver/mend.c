@@ -74,7 +74,7 @@ PetscErrorCode EqmSolverMend(EqmSolver solver)
   if (!solver->formulation->unfold) PetscFunctionReturn(0);
   PetscCall(CountFolds(solver, &folds));
   if (folds == 0) PetscFunctionReturn(0);
-  PetscCall(EqmCheckpointAskedToStop(solver, &stop));
+  PetscCall(EqmCheckpointStopRequested(solver, &stop));
   if (stop) PetscFunctionReturn(0);
   PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
   PetscCall(Unfold(solver, "at the end"));

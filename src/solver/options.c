@@ -1,6 +1,5 @@
 /* The options of a solver: defaults, names, help; and how settings without a value get that of the formulation. */
 #include "solver/solver_private.h"
-#include "mesh/mesh_private.h"
 #include "solver/inner.h"
 #include <string.h>
 

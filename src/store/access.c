@@ -1,6 +1,6 @@
 /* Getters and setters of a map. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include <omp.h>
 
 PetscErrorCode EqmMapGetSoup(EqmMap map, EqmSoup *soup)

@@ -1,6 +1,6 @@
 /* Histograms as CSV: a header and one row per bin. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/store.h"
 #include "base/atomicfile.h"
 

@@ -1,6 +1,6 @@
 /* The history of a run as CSV: a header and one row per iteration. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/store.h"
 #include "base/atomicfile.h"
 

@@ -2,7 +2,7 @@
  * field.
  */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/store.h"
 #include "format/format.h"
 #include "base/rows.h"

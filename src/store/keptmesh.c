@@ -1,5 +1,5 @@
 #include "store/keptmesh.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/checksum.h"
 #include "base/lookup.h"
 #include "base/quiet.h"

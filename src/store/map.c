@@ -1,6 +1,6 @@
 /* Maps: made, freed, read from a file. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/store.h"
 #include "format/image.h"
 #include "h5/h5.h"

@@ -1,6 +1,6 @@
 /* The map of a repaired mesh, brought back onto the mesh that the user gave. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/rows.h"
 
 /* Copy `width` reals per vertex from the slabs of the repaired soup to those of the input, whose vertices kept their

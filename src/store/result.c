@@ -1,6 +1,6 @@
 /* The result file: the map, the mesh, the distortion, the history and where it all came from, in HDF5. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/store.h"
 #include "h5/h5.h"
 #include <stddef.h>

@@ -1,6 +1,5 @@
 /* What the writer and the reader of a state's file share. */
 #include "store/state_private.h"
-#include "mesh/mesh_private.h"
 #include <string.h>
 
 const char EqmStateIntegersPath[] = "/state/integers", EqmStateRealsPath[] = "/state/reals";

@@ -1,6 +1,6 @@
 /* The summary of a run as JSON, for scripts. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/store.h"
 #include "base/atomicfile.h"
 #include <cjson/cJSON.h>

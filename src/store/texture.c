@@ -1,6 +1,6 @@
 /* A map as the texture coordinates of its surface, for programs that paint it. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "base/rows.h"
 #include "format/format.h"
 

@@ -1,6 +1,6 @@
 /* What a map is worth, in words. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 
 /* What cells that are far off, which hold next to nothing of the measure, add to the unweighted figures. */
 static PetscErrorCode ViewOutliers(EqmMap map)

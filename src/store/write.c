@@ -1,6 +1,6 @@
 /* Results into the files that -o names, each in the format of its suffix. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/output.h"
 #include "store/store.h"
 #include "base/nearest.h"

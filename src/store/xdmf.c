@@ -1,7 +1,7 @@
 /* The XDMF files beside a result: XML that tells ParaView what the HDF5 file holds. The mesh and its image have a file
    each, so that neither hides the other. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/store.h"
 #include "base/atomicfile.h"
 #include <errno.h>

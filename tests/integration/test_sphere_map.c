@@ -1,7 +1,7 @@
 /* Whole runs to the sphere: small energies without folds, the same map on any number of ranks, the same bits for any
    number of threads, and nothing that depends on where the mesh lies in space or in which units. */
 #include "support/runs.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/map_private.h"
 
 /* The default ends by itself with a small energy, without folds, with every vertex on the sphere. The shape is made

@@ -1,7 +1,7 @@
 /* The diagnosis: every kind of finding provoked, its places and counts the same on any number of ranks; what repair
    makes of it. */
 #include <equimap/soup.h>
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "support/checks.h"
 #include <string.h>
 

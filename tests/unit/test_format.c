@@ -1,6 +1,6 @@
 /* Every format is read as it was written, and every kind of bad file is told apart. */
 #include <errno.h>
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include <math.h>
 #include <sys/stat.h>
 #include <unistd.h>

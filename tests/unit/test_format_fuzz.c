@@ -1,7 +1,6 @@
 /* Whatever the bytes of a file are, a parser returns: with a mesh that holds together or with an error that has a text.
  */
 #include <equimap/soup.h>
-#include "mesh/mesh_private.h"
 #include "format/format.h"
 #include "format_samples.h"
 #include "support/checks.h"

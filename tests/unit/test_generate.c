@@ -1,6 +1,6 @@
 /* Test shapes and refinement: the topology that they promise, the same mesh on any number of ranks. */
 #include <equimap/soup.h>
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "support/checks.h"
 
 typedef struct {

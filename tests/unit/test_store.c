@@ -1,6 +1,6 @@
 /* The store: results written on k ranks come back bit for bit, failures are alike on all ranks and damage nothing. */
 #include <equimap/map.h>
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <sys/stat.h>
