@@ -18,7 +18,7 @@ typedef struct {
 } EqmStopFile;
 PETSC_INTERN PetscErrorCode EqmStopWatchFile(MPI_Comm comm, const char *file, EqmStopFile *watch);
 
-/* Was a stop requested on any rank? The same answer on all. `watch` may be NULL. Collective. */
+/* Was a stop requested on any rank? The same result on all. `watch` may be NULL. Collective. */
 PETSC_INTERN PetscErrorCode EqmStopRequested(MPI_Comm comm, const EqmStopFile *watch, EqmStopReason *reason);
 /* In words. Not collective. */
 PETSC_INTERN const char *EqmStopReasonName(EqmStopReason reason);

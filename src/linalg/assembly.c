@@ -29,7 +29,8 @@ static inline PetscInt EntriesOfPair(const EqmAssembly assembly, PetscInt v, Pet
   return assembly->storage == EQM_STORE_LOWER && v == w ? k + 1 : assembly->unknowns.count[w];
 }
 
-/* Append the rows of an owned vertex: `list` is room for its neighbours and itself, `first` for as many numbers. */
+/* Append the rows of an owned vertex: `list` is work space for its neighbours and itself, `first` for as many numbers.
+ */
 static PetscErrorCode AppendRows(const EqmAssembly assembly, const EqmGraph *graph, PetscInt v, PetscInt *list,
                                  PetscInt *first, PetscInt *row_start, PetscInt *column)
 {
@@ -57,7 +58,7 @@ static PetscErrorCode AppendRows(const EqmAssembly assembly, const EqmGraph *gra
   PetscFunctionReturn(0);
 }
 
-/* Room for all rows: no row of a vertex is longer than its neighbours' and its own unknowns. */
+/* Allocate all rows: no row of a vertex is longer than its neighbours' and its own unknowns. */
 static PetscInt MostEntries(const EqmAssembly assembly, const EqmGraph *graph, PetscInt *most_neighbors)
 {
   const EqmUnknowns *const u = &assembly->unknowns;
@@ -101,7 +102,7 @@ static PetscErrorCode MakePattern(EqmAssembly assembly)
   PetscFunctionReturn(0);
 }
 
-/* Look at the blocks of a matrix; give them back with EqmBlocksRestore. Collective. */
+/* Access the blocks of a matrix; release them with EqmBlocksRestore. Collective. */
 PetscErrorCode EqmBlocksGet(Mat matrix, EqmBlocks *blocks)
 {
   PetscInt n;

@@ -67,7 +67,7 @@ static PetscErrorCode MakeTree(EqmFrontal f)
   PetscFunctionReturn(0);
 }
 
-/* Where the rows that a front hands on stand among those of another one above it: from row `skip` of that on. */
+/* Positions of a front's update rows among the rows of an ancestor: from row `skip` of that on. */
 static PetscErrorCode FindRows(EqmFrontal f, PetscInt k, PetscInt above, PetscInt skip, PetscInt *place)
 {
   const PetscInt *const rows = f->row + f->row_start[above], most = EqmFrontRows(f, above);

@@ -23,7 +23,7 @@ static PetscBool HasFailed(EqmFrontal f)
   return (PetscBool)(not_definite || no_memory);
 }
 
-/* Room for n x n numbers, or a note that there is none. */
+/* Allocate n x n numbers; records a failure. */
 static PetscScalar *Allocate(EqmFrontal f, size_t n)
 {
   PetscScalar *const room = malloc(PetscMax(n, 1) * sizeof(PetscScalar));
@@ -113,7 +113,7 @@ static void Update(EqmFrontal f, PetscInt k, PetscBool divide, PetscScalar *upda
   TakeChildren(f, k, divide, update);
 }
 
-/* One front; `update` is room for what it hands on. */
+/* One front; `update` gets its update matrix. */
 static void FactorFront(EqmFrontal f, PetscInt k, PetscBool divide, const PetscScalar *matrix, PetscScalar *update)
 {
   Assemble(f, k, divide, matrix);

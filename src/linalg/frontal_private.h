@@ -49,7 +49,7 @@ static inline PetscInt EqmFrontRows(EqmFrontal f, PetscInt k)
   return f->row_start[k + 1] - f->row_start[k];
 }
 
-/* Rows that a front hands on. */
+/* Rows of a front's update matrix. */
 static inline PetscInt EqmFrontRest(EqmFrontal f, PetscInt k)
 {
   return EqmFrontRows(f, k) - EqmFrontColumns(f, k);

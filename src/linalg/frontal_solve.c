@@ -35,7 +35,7 @@ static void PutOwn(const Sweep *s, PetscInt k, const PetscScalar *x)
   }
 }
 
-/* Room for the rows of a front. */
+/* Work space for the rows of a front. */
 static PetscScalar *Allocate(const Sweep *s, PetscInt k)
 {
   PetscScalar *const x = malloc((size_t)s->f->most_rows[k] * (size_t)s->count * sizeof(PetscScalar));

@@ -6,7 +6,7 @@
 
 enum { MOST_LEVELS = 32 };
 
-/* The fronts that this rank leads and the rank that it hands on to. */
+/* The fronts that this rank leads, and the rank that gets its update matrix. */
 static PetscErrorCode FindPlace(EqmInterface tree)
 {
   PetscMPIInt rank, size, low = 0, high;

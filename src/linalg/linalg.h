@@ -117,7 +117,7 @@ struct _p_EqmLinear {
 
 /* List the options of linear solvers, with help: -linear_solver, -memory_limit. */
 PETSC_INTERN PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject);
-/* Hand what was asked for on to a run inside this one, which has options of its own. */
+/* Copy these options to an inner run, which has a database of its own. */
 PETSC_INTERN PetscErrorCode EqmLinearPassOptions(PetscOptions options);
 /* Until EqmOptionsPopDefaults, options that are not given have the values of `defaults` (pairs of name and value). The
    caller's database is not written to; what has been used meanwhile counts as used there, too. Collective. */

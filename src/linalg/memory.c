@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Of what is free, this share may go to factors: estimates are not exact, and vectors need room as well. */
+/* Share of the free memory that factors may use: estimates are not exact, and vectors need memory as well. */
 static const PetscReal usable = .8;
 
 /* The number behind `key` in a file of lines "key number", or the file's first number if `key` is NULL; `missing` if
@@ -42,7 +42,7 @@ static const Hierarchy hierarchies[] = {{"0::", "/sys/fs/cgroup", "memory.max", 
                                         {":memory:", "/sys/fs/cgroup/memory", "memory.limit_in_bytes",
                                          "memory.usage_in_bytes", "total_inactive_file"}};
 
-/* What the group and those round it leave; the cache of files that nobody uses counts as free. */
+/* What the group and those round it leave; the page cache counts as free. */
 static PetscReal FreeInGroups(const Hierarchy *h, const char *group)
 {
   char folder[2 * PETSC_MAX_PATH_LEN];

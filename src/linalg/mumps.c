@@ -71,7 +71,7 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
   PetscFunctionBegin;
   PetscCall(EqmAssemblyGetMat(linear->assembly, &matrix));
   PetscCall(MatGetInfo(matrix, MAT_LOCAL, &info));
-  /* every number handed to MUMPS in its integers is one of an unknown or less, counted from 1 */
+  /* every integer passed to MUMPS is the number of an unknown, from 1, or less */
   PetscCall(EqmCheckFits((PetscInt64)linear->num_unknowns + 1, sizeof(MUMPS_INT), "MUMPS", "unknowns"));
   m->id.n = (MUMPS_INT)linear->num_unknowns;
   m->id.nnz_loc = (MUMPS_INT8)info.nz_used;
@@ -97,7 +97,7 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
              "MUMPS ignored the ordering it was given (INFOG(7) = %d)", m->id.INFOG(7));
   linear->estimate.nonzeros = m->id.INFOG(3) < 0 ? -1e6 * m->id.INFOG(3) : m->id.INFOG(3);
   linear->estimate.flops = m->id.RINFOG(1);
-  linear->estimate.bytes_on_rank = 1e6 * (1. + m->id.INFO(15)); /* told in whole megabytes */
+  linear->estimate.bytes_on_rank = 1e6 * (1. + m->id.INFO(15)); /* reported in whole megabytes */
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
 
   PetscCall(PetscMalloc1(linear->num_owned, &m->rhs_row));
@@ -128,7 +128,7 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscFunctionReturn(0);
 }
 
-/* Room for as many right-hand sides, on our side and on MUMPS'. */
+/* Allocate for that many right-hand sides, for ours and MUMPS' arrays. */
 static PetscErrorCode Reserve(EqmLinear linear, PetscInt num_rhs)
 {
   Mumps *const m = linear->data;

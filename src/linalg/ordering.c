@@ -71,7 +71,7 @@ static PetscErrorCode OrderAll(EqmOrdering ordering)
   PetscFunctionReturn(0);
 }
 
-/* Orders are made when they are first asked for. Not collective. */
+/* Orderings are computed on first use. Not collective. */
 PetscErrorCode EqmOrderingCreate(EqmMesh mesh, EqmOrdering *out)
 {
   PetscFunctionBegin;

@@ -6,7 +6,7 @@
 
 typedef struct {
   KSP ksp;
-  Mat matrix; /* of the type asked for: the assembled one or a copy */
+  Mat matrix; /* of the type in the options: the assembled matrix or a copy */
   Vec b, x;
 } Petsc;
 

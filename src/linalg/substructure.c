@@ -17,7 +17,7 @@ static inline PetscScalar ValueAt(const EqmBlocks *blocks, PetscInt source)
   return source >= 0 ? blocks->value[0][source] : blocks->value[1][-1 - source];
 }
 
-/* D: the owner of a separator knows its diagonal and the length of its row, the other ranks ask it. */
+/* D: the owner of a separator has its diagonal and the length of its row, the other ranks fetch them. */
 static PetscErrorCode FillShift(EqmLinear linear, const EqmBlocks *blocks)
 {
   EqmSubstructure *const s = linear->data;

@@ -21,7 +21,7 @@ typedef struct {
   PetscInt *place;     /* per separator unknown: which of them it is in the order of elimination */
   PetscScalar *block;  /* their block of the factor, by columns, in that order */
   PetscScalar *values; /* of a solve: per unknown of this rank's matrix and right-hand side */
-  PetscInt num_rhs;    /* for so many there is room */
+  PetscInt num_rhs;    /* allocated right-hand sides */
   EqmInterface interface;
 } EqmSubstructure;
 

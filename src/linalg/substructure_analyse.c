@@ -102,7 +102,7 @@ static PetscErrorCode PlaceEntries(EqmLinear linear, const EqmBlocks *blocks, Pe
   PetscFunctionReturn(0);
 }
 
-/* The rank's matrix by rows, lower triangle, with room for D. */
+/* The rank's matrix by rows, lower triangle, with entries for D. */
 static PetscErrorCode MakePattern(EqmLinear linear)
 {
   EqmSubstructure *const s = linear->data;

@@ -23,7 +23,7 @@ static PetscErrorCode ApplyBlock(EqmSubstructure *s, const char *transpose, Pets
   PetscFunctionReturn(0);
 }
 
-/* Room for as many right-hand sides. */
+/* Allocate for that many right-hand sides. */
 static PetscErrorCode Reserve(EqmSubstructure *s, PetscInt num_rhs)
 {
   PetscFunctionBegin;

@@ -51,7 +51,7 @@ static PetscErrorCode MoveRows(MPI_Comm comm, PetscBool deal, MPI_Datatype row, 
   PetscFunctionReturn(0);
 }
 
-/* Move rows between rank 0, which has room for `all` of them, and the slabs of the others; `deal` is the direction from
+/* Move rows between rank 0, whose `all` holds all of them, and the slabs of the others; `deal` is the direction from
    rank 0. A row of `width` numbers is one item for MPI, whose counts are 32-bit. The slab of rank 0 is not touched. */
 static PetscErrorCode Transfer(MPI_Comm comm, PetscBool deal, MPI_Datatype number, PetscInt width, PetscMPIInt tag,
                                const PetscInt *start, void *all, void *slab)

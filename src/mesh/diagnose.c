@@ -71,7 +71,7 @@ static PetscErrorCode DiagnoseLinks(const EqmVicinity *vicinity, PetscBool *on_b
       CountTriangleEdges(vicinity, v, &link, finding, counts);
     else
       CountTetrahedronFaces(vicinity, v, &link, finding, counts);
-    /* where an edge has too many cells, its ends cannot be regular: that is said of the edge alone */
+    /* where an edge has too many cells, its ends cannot be regular: that is reported of the edge alone */
     if (link.manifold && !link.regular) {
       EqmFindingAdd(&finding[EQM_FINDING_NON_MANIFOLD_VERTEX], vicinity->input[v], -1, -1, -1);
     }

@@ -35,7 +35,7 @@ PETSC_INTERN PetscErrorCode EqmVicinityCellSF(const EqmVicinity *vicinity, Petsc
 PETSC_INTERN PetscInt EqmVicinityCellOwnerVertex(const EqmVicinity *vicinity, PetscInt cell);
 PETSC_INTERN PetscReal EqmCellMeasure(const EqmVicinity *vicinity, PetscInt cell, PetscReal *quality);
 
-/* The link of a vertex: what its star looks like from outside. Arrays are reused from vertex to vertex. */
+/* The link of a vertex: the boundary of its star. Arrays are reused from vertex to vertex. */
 typedef struct {
   PetscInt num_vertices;
   PetscInt *vertex;       /* local vertex numbers of the neighbours */

@@ -2,7 +2,7 @@
 #include "mesh/diagnose.h"
 #include "base/sets.h"
 
-/* Room for the links of all owned vertices of a vicinity. Free with EqmLinkReset. Not collective. */
+/* Work space for the links of all owned vertices of a vicinity. Free with EqmLinkReset. Not collective. */
 PetscErrorCode EqmLinkCreate(const EqmVicinity *vicinity, EqmLink *link)
 {
   PetscInt largest = 0, n;

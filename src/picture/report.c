@@ -20,7 +20,7 @@ static PetscErrorCode DrawAlone(PetscInt num, const char *const *files, const ch
   }
   for (PetscInt k = 0; k < loaded; k++) PetscCall(EqmResultReset(&results[k]));
   if (code && message[0]) EqmFail(PETSC_COMM_SELF, code, "%s", message);
-  PetscFunctionReturn(code); /* the reader has said why */
+  PetscFunctionReturn(code); /* the reader has reported the reason */
 }
 
 PetscErrorCode EqmReportWrite(MPI_Comm comm, PetscInt num_results, const char *const *result_files, const char *picture,
@@ -35,5 +35,5 @@ PetscErrorCode EqmReportWrite(MPI_Comm comm, PetscInt num_results, const char *c
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank == 0) code = DrawAlone(num_results, result_files, picture, options);
   PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
-  PetscFunctionReturn(code); /* rank 0 has said why */
+  PetscFunctionReturn(code); /* rank 0 has reported the reason */
 }

@@ -20,7 +20,7 @@ typedef struct {
   PetscInt num_fields;
 } Gathered;
 
-/* Bring slabs of reals together on rank 0, where `all` has room for them. */
+/* Gather slabs of reals on rank 0, in `all`. */
 static PetscErrorCode GatherReals(MPI_Comm comm, PetscInt width, PetscInt count, const PetscReal *slab, PetscReal *all)
 {
   PetscLayout layout;
