@@ -139,10 +139,10 @@ PetscErrorCode EqmJudgeEnd(EqmSolver solver, EqmStep outcome)
 
 PetscErrorCode EqmJudgeFolds(EqmSolver solver)
 {
-  const EqmMethodDefaults *const offered = &solver->formulation->methods[0];
+  const EqmMethodDefaults *const first = &solver->formulation->methods[0];
   const PetscBool solid = (PetscBool)(solver->mesh->cell_size == 4);
   const PetscBool is_default =
-      (PetscBool)(!strcmp(solver->defaults.name, offered->name) && !strcmp(solver->start->name, offered->start));
+      (PetscBool)(!strcmp(solver->defaults.name, first->name) && !strcmp(solver->start->name, first->start));
   PetscInt64 on_boundary = 0;
 
   PetscFunctionBegin;

@@ -1,5 +1,5 @@
-/* A program of somebody else's: generate a spherical cap, map it to the disk through the C API, look at the energy.
-   Lambert's azimuthal map of the smooth cap keeps area exactly, so what is left comes from the mesh alone. */
+/* A program that uses the installed library: generate a spherical cap, map it to the disk through the C API, check the
+   energy. Lambert's azimuthal map of the smooth cap keeps area exactly, so what is left comes from the mesh alone. */
 #include <equimap.h>
 
 static PetscErrorCode MapCap(PetscReal *initial, PetscReal *final, PetscInt64 *folds)

@@ -1,4 +1,4 @@
-/* The papers' algorithms written out a second time, plainly, against the methods of the house: the fixed point of 000
+/* The papers' algorithms in a second, plain implementation, against the library's methods: the fixed point of 000
    (14) with dense matrices, 000 Algorithm 1 with its step (18), 002 Algorithm 1. */
 #include "support/testing.h"
 #include "domain/domain_private.h"
@@ -102,7 +102,7 @@ static PetscErrorCode DenseFixedPointStep(EqmMesh mesh, PetscReal *x)
   PetscFunctionReturn(0);
 }
 
-/* Three steps of the house and of the dense form from the same start; on one rank. */
+/* Three steps of the library and of the dense form from the same start; on one rank. */
 static PetscErrorCode TestFixedPoint(const char *shape)
 {
   TestMesh test;
@@ -328,7 +328,7 @@ static PetscErrorCode CheckProof(const Ncg *ncg)
   PetscFunctionReturn(0);
 }
 
-/* The house's ncg without guard takes the same steps. */
+/* The library's ncg without safeguard takes the same steps. */
 static PetscErrorCode CheckHouse(EqmMesh mesh, const Ncg *ncg)
 {
   char options[128];

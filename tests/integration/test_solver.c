@@ -35,7 +35,7 @@ static PetscErrorCode TestStops(const char *options, EqmStatus status, const cha
 {
   static TestMesh test;
   EqmSolver solver;
-  PetscBool said = PETSC_FALSE;
+  PetscBool is_named = PETSC_FALSE;
   char *found;
 
   PetscFunctionBegin;
@@ -44,8 +44,8 @@ static PetscErrorCode TestStops(const char *options, EqmStatus status, const cha
   CHECK(solver->status == status, "%s: status %d, not %d: %s", options, (int)solver->status, (int)status,
         solver->message);
   PetscCall(PetscStrstr(solver->message, word, &found));
-  said = (PetscBool)(found != NULL);
-  CHECK(said, "%s: '%s' does not speak of %s", options, solver->message, word);
+  is_named = (PetscBool)(found != NULL);
+  CHECK(is_named, "%s: '%s' does not mention %s", options, solver->message, word);
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);

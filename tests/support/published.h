@@ -24,7 +24,7 @@ static inline PetscErrorCode TestReadPublished(const char *name, EqmSoup *soup)
   PetscFunctionReturn(0);
 }
 
-/* One run, told; it must not fold. */
+/* One run with its figures printed; it must not fold. */
 static inline PetscErrorCode TestRow(EqmMesh mesh, const char *target, const char *options, PetscReal *energy,
                                      PetscReal *sd)
 {
@@ -45,7 +45,7 @@ static inline PetscErrorCode TestRow(EqmMesh mesh, const char *target, const cha
   PetscFunctionReturn(0);
 }
 
-/* A test's main: `test` takes the mesh over; without it nothing is tested, and said so by the exit code. */
+/* A test's main: `test` takes the mesh over; without it the test is skipped, by its exit code. */
 static inline int TestOnPublished(int argc, char **argv, const char *name, PetscErrorCode (*test)(EqmSoup))
 {
   EqmSoup soup;

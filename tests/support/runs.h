@@ -90,7 +90,7 @@ static inline PetscErrorCode TestSameWithThreads(MPI_Comm comm, const char *shap
   PetscFunctionReturn(0);
 }
 
-/* What cannot be done is told before any work. */
+/* Options that cannot be satisfied are refused before any work. */
 static inline PetscErrorCode TestRefused(EqmMesh mesh, const char *target, const char *text)
 {
   PetscOptions options;

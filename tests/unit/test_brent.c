@@ -15,7 +15,7 @@ static PetscErrorCode Function(void *context, PetscReal t, PetscReal *value)
                               -t};
 
   PetscFunctionBegin;
-  CHECK(t > 0. && t < 1., "asked at %g", (double)t);
+  CHECK(t > 0. && t < 1., "evaluated at %g", (double)t);
   *value = values[c->which];
   c->evaluations++;
   PetscFunctionReturn(0);

@@ -126,7 +126,7 @@ static PetscErrorCode Wind(EqmDomain domain, PetscReal turns, PetscReal shift, E
   PetscFunctionReturn(0);
 }
 
-/* 000 (10) asks for ordered angles and Algorithm 1 does not keep them: the house must see every disorder. */
+/* 000 (10) requires ordered angles and Algorithm 1 does not keep them: every disorder must be found. */
 static PetscErrorCode TestOrderOnCircle(EqmDomain domain, const EqmPlace *start)
 {
   EqmPlace place;

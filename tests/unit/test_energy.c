@@ -122,10 +122,10 @@ static PetscErrorCode TestSecondDerivatives(EqmDomain domain, const EqmPlace *pl
   }
   for (PetscInt c = 0; c < m; c++) {
     const PetscReal rate = (8. * (a[3 * m + c] - a[m + c]) - (a[4 * m + c] - a[c])) / (12. * h);
-    const PetscReal bend =
+    const PetscReal second_derivative =
         (16. * (a[3 * m + c] + a[m + c]) - (a[4 * m + c] + a[c]) - 30. * a[2 * m + c]) / (12. * h * h);
     CHECK_CLOSE(first[c], rate, 1e-9, 1.);
-    CHECK_CLOSE(second[c], bend, 1e-7, 1.);
+    CHECK_CLOSE(second[c], second_derivative, 1e-7, 1.);
     largest = PetscMax(largest, PetscAbsReal(second[c]));
   }
   CHECK(TestMax(mesh->comm, largest) > 1e-2, "the second derivatives are too small to show anything");
@@ -209,7 +209,7 @@ static PetscErrorCode TestCellDerivatives(EqmDomain domain, const EqmPlace *plac
   PetscCall(VecGetArrayRead(step, &s));
   for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
     EqmCellDerivatives d;
-    PetscReal x[EQM_MOST_CELL_DOFS], rate = 0., bend = 0., size = 1.;
+    PetscReal x[EQM_MOST_CELL_DOFS], rate = 0., second_derivative = 0., size = 1.;
     PetscInt n = 0;
     PetscBool mine = PETSC_TRUE;
     EqmCellDifferentiate(domain, place, c, &d);
@@ -223,11 +223,11 @@ static PetscErrorCode TestCellDerivatives(EqmDomain domain, const EqmPlace *plac
     if (!mine) continue;
     for (PetscInt i = 0; i < n; i++) {
       rate += d.first[i] * x[i];
-      for (PetscInt j = 0; j < n; j++) bend += x[i] * d.second[i][j] * x[j];
+      for (PetscInt j = 0; j < n; j++) second_derivative += x[i] * d.second[i][j] * x[j];
       size += x[i] * x[i];
     }
     CHECK_CLOSE(rate, first[c], 1e-13, size);
-    CHECK_CLOSE(bend, second[c], 1e-13, size);
+    CHECK_CLOSE(second_derivative, second[c], 1e-13, size);
   }
   PetscCall(VecRestoreArrayRead(step, &s));
   PetscCall(VecDestroy(&step));
@@ -288,7 +288,7 @@ static PetscErrorCode TestTarget(const char *shape, PetscInt n, const char *targ
   PetscFunctionReturn(0);
 }
 
-/* A ball, shaken: identities and derivatives ask for no good map. */
+/* A ball, shaken: identities and derivatives hold for any map. */
 static PetscErrorCode TestSolid(void)
 {
   TestMesh test;

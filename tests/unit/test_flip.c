@@ -26,7 +26,7 @@ static PetscErrorCode CheckWeights(EqmMesh mesh, const PetscReal *weights)
 }
 
 /* Area and energy of a soup. */
-static PetscErrorCode Look(EqmSoup soup, PetscBool check, Outcome *outcome)
+static PetscErrorCode Measure(EqmSoup soup, PetscBool check, Outcome *outcome)
 {
   EqmLedger ledger;
   EqmMesh mesh;
@@ -57,8 +57,8 @@ static PetscErrorCode Run(MPI_Comm comm, const char *shape, Outcome *before, Out
   PetscFunctionBegin;
   PetscCall(EqmSoupGenerate(comm, shape, 600, 5, &soup));
   PetscCall(EqmSoupFlip(soup, &flipped, &after->flips));
-  PetscCall(Look(soup, PETSC_FALSE, before));
-  PetscCall(Look(flipped, (PetscBool)(comm == PETSC_COMM_SELF), after));
+  PetscCall(Measure(soup, PETSC_FALSE, before));
+  PetscCall(Measure(flipped, (PetscBool)(comm == PETSC_COMM_SELF), after));
   PetscCall(EqmSoupDestroy(&soup));
   PetscCall(EqmSoupDestroy(&flipped));
   PetscFunctionReturn(0);

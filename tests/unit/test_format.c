@@ -1,4 +1,4 @@
-/* Every format is read as it was written, and every kind of bad file is told apart. */
+/* Every format is read as it was written, and every kind of bad file has an error of its own. */
 #include <errno.h>
 #include "mesh/soup_private.h"
 #include <math.h>

@@ -210,7 +210,7 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   PetscFunctionReturn(0);
 }
 
-/* Solvers of one rank on several are the user's mistake, and said so. */
+/* Solvers of one rank on several are a usage error. */
 static PetscErrorCode TestOnSeveralRanks(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
                                          const char *option)
 {
@@ -224,7 +224,7 @@ static PetscErrorCode TestOnSeveralRanks(EqmMesh mesh, EqmOrdering ordering, con
   PetscFunctionReturn(0);
 }
 
-/* Estimates come before the numbers, and who has too little memory iterates or is told so. */
+/* Estimates precede the factorisation; with too little memory the solver is iterative, or fails with a message. */
 static PetscErrorCode TestMemory(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns)
 {
   PetscOptions options;
@@ -311,7 +311,7 @@ static PetscErrorCode TestOnMesh(const char *shape, PetscInt n, const char *part
   PetscFunctionReturn(0);
 }
 
-/* One rank's factor and solutions on so many threads; `x` has room for 5 columns. */
+/* One rank's factor and solutions on so many threads; `x` holds 5 columns. */
 static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, int threads, PetscReal *x)
 {
   Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5, .spoil = 1e3};

@@ -9,7 +9,7 @@
 
 enum { POINTS = 200 };
 
-/* An image to look in. */
+/* An image to search. */
 typedef struct {
   TestMesh test;
   EqmSolver solver;
@@ -62,8 +62,8 @@ static PetscErrorCode BruteForce(const Image *image, const PetscReal *point, Pet
   PetscFunctionReturn(0);
 }
 
-/* Points in and around the image, all of them asked by every rank, are found as close as can be, with coordinates that
-   lead to the place. */
+/* Points in and around the image, all of them queried by every rank, are found as close as can be, with coordinates
+   that lead to the place. */
 static PetscErrorCode TestFind(Image *image, PetscReal size, PetscBool outside)
 {
   const PetscInt dim = image->dim;

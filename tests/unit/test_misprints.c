@@ -239,7 +239,7 @@ static PetscErrorCode MakeFlatDisk(TestMesh *test)
   PetscFunctionReturn(0);
 }
 
-/* E of the identity moved by delta times something random, by the house's form and by the papers'. */
+/* E of the identity moved by delta times something random, by the library's form and by the papers'. */
 static PetscErrorCode EnergyNearMinimum(EqmDomain domain, PetscReal delta, PetscReal *energy, PetscReal *first_form)
 {
   const EqmMesh mesh = domain->mesh;

@@ -81,7 +81,7 @@ static PetscErrorCode TestThrough(void)
   PetscFunctionReturn(0);
 }
 
-/* A known map is found again from exact landmarks; a rotation where no more is asked or possible. */
+/* A known map is found again from exact landmarks; a rotation where only that is wanted or possible. */
 static PetscErrorCode TestAlign(void)
 {
   enum { N = 9 };

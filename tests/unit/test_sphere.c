@@ -175,10 +175,10 @@ static PetscErrorCode TestMeasure(Setting *s, EqmMeasureKind kind)
   }
   for (PetscInt c = 0; c < m; c++) {
     const PetscReal rate = (8. * (a[3 * m + c] - a[m + c]) - (a[4 * m + c] - a[c])) / (12. * h);
-    const PetscReal bend =
+    const PetscReal second_derivative =
         (16. * (a[3 * m + c] + a[m + c]) - (a[4 * m + c] + a[c]) - 30. * a[2 * m + c]) / (12. * h * h);
     CHECK_CLOSE(first[c], rate, 1e-10, 1.);
-    CHECK_CLOSE(second[c], bend, 1e-8, 1.);
+    CHECK_CLOSE(second[c], second_derivative, 1e-8, 1.);
     largest = PetscMax(largest, PetscAbsReal(second[c]));
     slope[c] = TestRandom(8, mesh->cell_input[c], 0);
     if (c < mesh->num_owned_cells) sum += slope[c] * first[c];
@@ -316,8 +316,9 @@ static void TestAppendixB(PetscInt seed)
   const PetscReal *const corner[] = {f, f + 3, f + 6}, *const velocity[] = {d, d + 3, d + 6};
   EqmMeasureGradient(EQM_MEASURE_AREA3, corner, g);
   for (PetscInt k = 0; k < 9; k++) along += g[k] * d[k];
-  const PetscReal bend = EqmMeasureSecondDerivative(EQM_MEASURE_AREA3, corner, velocity);
-  CHECK_CLOSE(2. * (along * along + EqmArea3(f, f + 3, f + 6) * bend), form, 1e-12, 1. + PetscAbsReal(form));
+  const PetscReal second_derivative = EqmMeasureSecondDerivative(EQM_MEASURE_AREA3, corner, velocity);
+  CHECK_CLOSE(2. * (along * along + EqmArea3(f, f + 3, f + 6) * second_derivative), form, 1e-12,
+              1. + PetscAbsReal(form));
 }
 
 /* ---- unfolding */

@@ -206,7 +206,7 @@ static PetscErrorCode TestHistory(void)
   PetscFunctionReturn(0);
 }
 
-/* Texts of either kind are read alike, cut to what there is room for. */
+/* Texts of either kind are read alike, cut to the length of the buffer. */
 static PetscErrorCode TestTexts(void)
 {
   const EqmSlab one = {1, 0, 1, 0};

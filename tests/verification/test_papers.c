@@ -1,4 +1,4 @@
-/* The published rows of the Stanford Bunny and the house's own promise on it. Runs where EQUIMAP_DATA names a folder
+/* The published rows of the Stanford Bunny and our own figure on it. Runs where EQUIMAP_DATA names a folder
    with disk_stanford_bunny.obj; elsewhere it is skipped. */
 #include "support/published.h"
 

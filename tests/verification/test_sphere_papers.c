@@ -1,4 +1,4 @@
-/* The published rows of David Head (001) and the house's own promises on it. Runs where EQUIMAP_DATA names a folder
+/* The published rows of David Head (001) and our own figures on it. Runs where EQUIMAP_DATA names a folder
    with sphere_david_head.obj; elsewhere it is skipped. */
 #include "support/published.h"
 
@@ -32,7 +32,8 @@ static PetscErrorCode TestPromises(EqmMesh mesh)
   PetscFunctionReturn(0);
 }
 
-/* 001 Table 8: noise of .005, 100 steps: 5.51e-3 and .0211, for random numbers that nobody else has. */
+/* 001 Table 8: noise of .005, 100 steps: 5.51e-3 and .0211, with the paper's own random numbers, which are not
+   published. */
 static PetscErrorCode TestNoise(EqmSoup soup)
 {
   PetscReal energy, sd;
