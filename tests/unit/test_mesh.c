@@ -1,6 +1,7 @@
 /* The distributed mesh against the same mesh on one rank: stars, halo, measures, boundary, blocks, ways to the input.
  */
 #include "support/testing.h"
+#include "mesh/gather.h"
 #include "mesh/mesh_private.h"
 
 /* Vertex numbers of the input for every local vertex, ghosts from their owners. */
@@ -285,6 +286,30 @@ static PetscErrorCode TestRefinedFan(void)
   PetscFunctionReturn(0);
 }
 
+/* Positions of a few vertices on every rank, one of them twice; vertex 2 is of no cell. */
+static PetscErrorCode TestGather(void)
+{
+  static const PetscReal points[] = {0., 0., 0., 1., 0., .5, 9., 9., 9., 1., 1., -.25, 0., 1., 2.};
+  static const PetscInt corners[] = {0, 1, 3, 0, 3, 4}, all[] = {4, 2, 0, 4}, used[] = {3, 1};
+  PetscReal got[12];
+  PetscInt missing;
+  EqmSoup soup;
+  TestMesh test;
+
+  PetscFunctionBegin;
+  PetscCall(TestSoupFromArrays(PETSC_COMM_WORLD, 5, points, 3, 2, corners, &soup));
+  PetscCall(TestMeshFromSoup(soup, &test));
+  PetscCall(EqmMeshGatherVertices(test.mesh, 2, used, 3, test.mesh->position, got, &missing));
+  CHECK(missing == -1, "vertex %d is of no cell", (int)missing);
+  for (PetscInt k = 0; k < 6; k++) CHECK(got[k] == points[3 * used[k / 3] + k % 3], "entry %d is %g", (int)k, got[k]);
+  PetscCall(EqmMeshGatherVertices(test.mesh, 4, all, 3, test.mesh->position, got, &missing));
+  CHECK(missing == 1, "the first missing vertex is at %d", (int)missing);
+  for (PetscInt k = 0; k < 12; k++)
+    CHECK(got[k] == (k / 3 == 1 ? 0. : points[3 * all[k / 3] + k % 3]), "entry %d is %g", (int)k, got[k]);
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
@@ -295,6 +320,7 @@ int main(int argc, char **argv)
   PetscCall(TestShape("patch", 1, "-partition metis", One));
   PetscCall(TestFan());
   PetscCall(TestRefinedFan());
+  PetscCall(TestGather());
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
