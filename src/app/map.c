@@ -4,7 +4,7 @@
 #include "base/stop.h"
 #include "format/format.h"
 #include "intake/intake.h"
-#include "solver/inner.h"
+#include "maprun.h"
 #include "store/output.h"
 #include <string.h>
 
@@ -255,30 +255,18 @@ static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map, EqmMap 
 static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *options, EqmLedger ledger,
                             const EqmIntake *input, EqmStatus *status)
 {
-  EqmMesh mesh;
-  EqmSolver solver;
-  EqmMap found, map;
+  EqmMapRun run;
+  EqmIntake whole;
 
   PetscFunctionBegin;
-  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DISTRIBUTE));
-  PetscCall(EqmMeshCreate(input->mapped, ledger, &mesh));
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DISTRIBUTE));
-  PetscCall(EqmSolverCreate(mesh, line->command, &solver));
-  PetscCall(EqmSolverSetMonitor(solver, EqmSolverMonitorText, NULL));
-  PetscCall(EqmSolverSetFromOptions(solver));
-  PetscCall(EqmSolverSetStopFile(solver, &options->stop_file));
-  PetscCall(EqmSolverSolve(solver));
-  PetscCall(EqmSolverGetMap(solver, input->mapped, &found));
-  PetscCall(EqmIntakeTakeMap(input, mesh, found, &map));
-  PetscCall(EqmIntakeMeasureGiven(input, ledger, found, map));
-  PetscCall(TakeEigenvalues(options, ledger, solver, map));
-  PetscCall(Write(options, ledger, map));
-  PetscCall(PrintResult(options, map, map == found ? NULL : found));
-  PetscCall(EqmMapGetStatus(map, status, NULL));
-  if (map != found) PetscCall(EqmMapDestroy(&map));
-  PetscCall(EqmMapDestroy(&found));
-  PetscCall(EqmSolverDestroy(&solver));
-  PetscCall(EqmMeshDestroy(&mesh));
+  PetscCall(EqmMapRunSolve(line->command, input, &options->stop_file, ledger, &run));
+  PetscCall(EqmMapRunWithoutSplits(line->command, &options->input, input, &options->stop_file, ledger, &run, &whole));
+  PetscCall(TakeEigenvalues(options, ledger, run.solver, run.map));
+  PetscCall(Write(options, ledger, run.map));
+  PetscCall(PrintResult(options, run.map, run.map == run.found ? NULL : run.found));
+  PetscCall(EqmMapGetStatus(run.map, status, NULL));
+  PetscCall(EqmMapRunDestroy(&run));
+  PetscCall(EqmPreparationReset(&whole.preparation));
   PetscFunctionReturn(0);
 }
 

@@ -79,19 +79,25 @@ static PetscBool ShareSide(const PetscReal corner_arc[4], const PetscReal arc[3]
   return (PetscBool)(common != 0);
 }
 
-/* Has a triangle its three vertices on one side, so that its image is flat for every map? */
-static PetscErrorCode HasFlatCell(EqmMesh mesh, const PetscReal *arc, const PetscReal corner_arc[4], PetscBool *has)
+/* Triangles that are flat whatever the map, since their three vertices slide along one side: how many, and the lowest
+   number. */
+static PetscErrorCode CountFlatCells(EqmMesh mesh, const PetscReal *arc, const PetscReal corner_arc[4],
+                                     PetscInt64 *count, PetscInt *lowest)
 {
-  PetscInt local = 0, any;
+  PetscInt64 local = 0;
+  PetscInt first = PETSC_MAX_INT;
 
   PetscFunctionBegin;
   for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
     const PetscInt *const v = mesh->cells + 3 * c;
     const PetscReal of[3] = {arc[v[0]], arc[v[1]], arc[v[2]]};
-    if (of[0] >= 0. && of[1] >= 0. && of[2] >= 0. && ShareSide(corner_arc, of)) local = 1;
+    if (of[0] >= 0. && of[1] >= 0. && of[2] >= 0. && ShareSide(corner_arc, of)) {
+      local++;
+      first = PetscMin(first, mesh->cell_input[c]);
+    }
   }
-  PetscCall(MPIU_Allreduce(&local, &any, 1, MPIU_INT, MPI_MAX, mesh->comm));
-  *has = (PetscBool)(any > 0);
+  PetscCallMPI(MPI_Allreduce(&local, count, 1, MPIU_INT64, MPI_SUM, mesh->comm));
+  PetscCall(MPIU_Allreduce(&first, lowest, 1, MPIU_INT, MPI_MIN, mesh->comm));
   PetscFunctionReturn(0);
 }
 
@@ -139,14 +145,29 @@ static PetscErrorCode FindSharp(EqmMesh mesh, const PetscReal *arc, PetscReal co
 
 PetscErrorCode EqmCornersChoose(EqmMesh mesh, const PetscReal *arc, PetscReal corner_arc[4])
 {
-  PetscReal sharp[4];
-  PetscBool flat, found;
+  PetscInt64 flat = 0;
+  PetscInt lowest;
+  PetscBool found;
 
   PetscFunctionBegin;
-  PetscCall(CornersAtQuarters(mesh, arc, corner_arc));
-  PetscCall(HasFlatCell(mesh, arc, corner_arc, &flat));
-  if (!flat) PetscFunctionReturn(0);
-  PetscCall(FindSharp(mesh, arc, sharp, &found));
-  if (found) PetscCall(PetscArraycpy(corner_arc, sharp, 4));
+  PetscCall(FindSharp(mesh, arc, corner_arc, &found));
+  if (found) PetscCall(CountFlatCells(mesh, arc, corner_arc, &flat, &lowest));
+  if (!found || flat > 0) PetscCall(CornersAtQuarters(mesh, arc, corner_arc));
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmCornersCheckCells(EqmMesh mesh, const PetscReal *arc, const PetscReal corner_arc[4])
+{
+  PetscInt64 flat;
+  PetscInt lowest;
+
+  PetscFunctionBegin;
+  PetscCall(CountFlatCells(mesh, arc, corner_arc, &flat, &lowest));
+  if (flat == 0) PetscFunctionReturn(0);
+  EqmFail(mesh->comm, EQM_ERR_MESH,
+          "%" PetscInt64_FMT " triangles (the first is %" PetscInt_FMT
+          ") have their three vertices on one side of the square: every map makes them flat. Name corners among these "
+          "vertices with -corners, turn the triangles' inner edges, or map to the disk; with -repair their parts are "
+          "mapped, but they themselves remain flat",
+          flat, lowest);
 }

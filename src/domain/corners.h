@@ -11,9 +11,11 @@ PETSC_INTERN PetscErrorCode EqmCornersFromInput(EqmMesh mesh, const PetscInt cor
                                                 PetscReal corner_arc[4]);
 /* They must be different and in the boundary's order, in any rotation. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmCornersCheckOrder(EqmMesh mesh, const PetscReal corner_arc[4]);
-/* The boundary vertices nearest to the quarters of its length; where a triangle would be flat with these, the
-   boundary's sharp vertices if there are four. Errors: EQM_ERR_MESH (too few boundary vertices). Collective. */
+/* The boundary's sharp vertices where there are four, unless a triangle would be flat with these; else the boundary
+   vertices nearest to the quarters of its length. Errors: EQM_ERR_MESH (too few boundary vertices). Collective. */
 PETSC_INTERN PetscErrorCode EqmCornersChoose(EqmMesh mesh, const PetscReal *arc, PetscReal corner_arc[4]);
+/* Does every triangle have room? Errors: EQM_ERR_MESH (three vertices on one side: flat in every map). Collective. */
+PETSC_INTERN PetscErrorCode EqmCornersCheckCells(EqmMesh mesh, const PetscReal *arc, const PetscReal corner_arc[4]);
 /* Which side a boundary vertex lies on and how far along it; at a corner the fraction is 0. Not collective. */
 static inline PetscInt EqmSquareSide(const PetscReal corner_arc[4], PetscReal arc, PetscReal *fraction)
 {

@@ -45,6 +45,7 @@ PetscErrorCode EqmDomainCreateSquare(EqmMesh mesh, const PetscInt corners[4], Eq
   else
     PetscCall(EqmCornersChoose(mesh, domain->arc_length, domain->corner_arc));
   PetscCall(EqmCornersCheckOrder(mesh, domain->corner_arc));
+  PetscCall(EqmCornersCheckCells(mesh, domain->arc_length, domain->corner_arc));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     PetscReal t;
     if (domain->arc_length[v] < 0.) {

@@ -197,7 +197,7 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   if (intake->repair.cells_split && !options->quiet) {
     PetscCall(PetscPrintf(comm,
                           "%s%snote: the map is made for the parts of the %" PetscInt64_FMT
-                          " cells that were split; they themselves, measured afterwards, may be worse\n",
+                          " cells that were split; they themselves are measured afterwards\n",
                           OF_PART(options->part), intake->repair.cells_split));
   }
   PetscCall(Diagnose(options->target, PETSC_TRUE, intake, &fatal, text, sizeof(text)));
@@ -206,6 +206,28 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));
   if (options->checkpoint) PetscCall(Keep(plain, options, ledger));
   if (plain != intake->given) PetscCall(EqmSoupDestroy(&plain));
+  PetscFunctionReturn(0);
+}
+
+/* EqmIntakeWithoutSplits - the same mesh, prepared in the same way but for the cells that a repair has split.
+
+   Collective. whole - shares `given` with `intake`; free its preparation with EqmPreparationReset. can - it can be
+   mapped as it is: splits may serve the method alone. */
+PetscErrorCode EqmIntakeWithoutSplits(const EqmIntakeOptions *options, const EqmIntake *intake, EqmIntake *whole,
+                                      PetscBool *can)
+{
+  char text[4 * EQM_MESSAGE_MAX];
+  EqmPrepareOptions prepare = options->prepare;
+  PetscBool fatal;
+
+  PetscFunctionBegin;
+  *whole = (EqmIntake){.given = intake->given, .mapped = intake->given};
+  prepare.repair = options->repair;
+  prepare.target = options->target;
+  prepare.keeps_cells = PETSC_TRUE;
+  PetscCall(Prepare(&prepare, whole));
+  PetscCall(Diagnose(options->target, PETSC_FALSE, whole, &fatal, text, sizeof(text)));
+  *can = (PetscBool)!fatal;
   PetscFunctionReturn(0);
 }
 

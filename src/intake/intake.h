@@ -43,6 +43,8 @@ PETSC_INTERN PetscErrorCode EqmIntakeChoose(MPI_Comm comm, const char *named, co
 /* ---- intake.c */
 PETSC_INTERN PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger,
                                           EqmIntake *intake);
+PETSC_INTERN PetscErrorCode EqmIntakeWithoutSplits(const EqmIntakeOptions *options, const EqmIntake *intake,
+                                                   EqmIntake *whole, PetscBool *can);
 PETSC_INTERN PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap found, EqmMap *map);
 /* ---- given.c */
 /* The fate of a cell of the file; the highest of its parts. */

@@ -239,26 +239,46 @@ PetscErrorCode EqmVicinityRemoveDuplicates(EqmVicinity *vicinity, PetscInt64 *re
   PetscFunctionReturn(0);
 }
 
-/* Repair the cells of a vicinity: turn, cut, fill. Fills the groups 1 and 2 and the list. */
-static PetscErrorCode RepairCells(EqmSoup soup, const EqmVicinity *vicinity, EqmVertexGroup groups[3],
-                                  EqmRepair *repair, EqmCellList *list)
+/* New vertices on edges and in cells, the groups 1 and 2; without `split` none. */
+static PetscErrorCode NumberNew(const EqmVicinity *vicinity, PetscBool split, EqmVertexGroup groups[3],
+                                PetscInt *edge_vertex, PetscInt *center)
 {
-  PetscInt *edge_vertex, *center;
-  PetscBool *turn, *on_boundary;
+  PetscBool *on_boundary;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(EqmCellNumEdges(vicinity->cell_size) * vicinity->num_cells, &edge_vertex, vicinity->num_cells,
-                         &center, vicinity->num_cells, &turn, vicinity->num_local, &on_boundary));
-  PetscCall(EqmVicinityChooseTurns(soup, vicinity, turn));
-  PetscCall(EqmVicinityMarkBoundary(vicinity, on_boundary));
-  PetscCall(EqmEdgesNumber(vicinity, on_boundary, &groups[1], edge_vertex));
-  PetscCall(NumberCenters(vicinity, on_boundary, edge_vertex, &groups[2], center));
-  PetscCall(AddCells(vicinity, groups, edge_vertex, center, turn, repair, list));
-  PetscCall(PetscFree4(edge_vertex, center, turn, on_boundary));
+  for (PetscInt e = 0; e < EqmCellNumEdges(vicinity->cell_size) * vicinity->num_cells; e++) edge_vertex[e] = -1;
+  for (PetscInt c = 0; c < vicinity->num_cells; c++) center[c] = -1;
+  if (split) {
+    PetscCall(PetscMalloc1(vicinity->num_local, &on_boundary));
+    PetscCall(EqmVicinityMarkBoundary(vicinity, on_boundary));
+    PetscCall(EqmEdgesNumber(vicinity, on_boundary, &groups[1], edge_vertex));
+    PetscCall(NumberCenters(vicinity, on_boundary, edge_vertex, &groups[2], center));
+    PetscCall(PetscFree(on_boundary));
+  } else {
+    PetscCall(EqmVertexGroupPlace(vicinity->comm, &groups[1]));
+    PetscCall(EqmVertexGroupPlace(vicinity->comm, &groups[2]));
+  }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSoupRepair(EqmSoup *soup, EqmRepair *repair, PetscInt **parent)
+/* Repair the cells of a vicinity: turn, cut, fill. Fills the groups 1 and 2 and the list. */
+static PetscErrorCode RepairCells(EqmSoup soup, const EqmVicinity *vicinity, PetscBool split, EqmVertexGroup groups[3],
+                                  EqmRepair *repair, EqmCellList *list)
+{
+  PetscInt *edge_vertex, *center;
+  PetscBool *turn;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(EqmCellNumEdges(vicinity->cell_size) * vicinity->num_cells, &edge_vertex, vicinity->num_cells,
+                         &center, vicinity->num_cells, &turn));
+  PetscCall(EqmVicinityChooseTurns(soup, vicinity, turn));
+  PetscCall(NumberNew(vicinity, split, groups, edge_vertex, center));
+  PetscCall(AddCells(vicinity, groups, edge_vertex, center, turn, repair, list));
+  PetscCall(PetscFree3(edge_vertex, center, turn));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSoupRepairWith(EqmSoup *soup, PetscBool split, EqmRepair *repair, PetscInt **parent)
 {
   EqmVicinity vicinity;
   EqmVertexGroup groups[3] = {
@@ -274,7 +294,7 @@ PetscErrorCode EqmSoupRepair(EqmSoup *soup, EqmRepair *repair, PetscInt **parent
     repair->vertices_unreferenced += vicinity.star_start[v] == vicinity.star_start[v + 1];
   }
   PetscCall(EqmVertexGroupPlace((*soup)->comm, &groups[0]));
-  PetscCall(RepairCells(*soup, &vicinity, groups, repair, &list));
+  PetscCall(RepairCells(*soup, &vicinity, split, groups, repair, &list));
   PetscCall(EqmVicinityReset(&vicinity));
   repair->vertices_added = groups[1].num_local + groups[2].num_local;
   PetscCallMPI(
@@ -282,5 +302,12 @@ PetscErrorCode EqmSoupRepair(EqmSoup *soup, EqmRepair *repair, PetscInt **parent
   PetscCall(EqmSoupAssemble(soup, 3, groups, &list, parent));
   PetscCall(PetscFree(groups[1].position));
   PetscCall(PetscFree(groups[2].position));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSoupRepair(EqmSoup *soup, EqmRepair *repair, PetscInt **parent)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSoupRepairWith(soup, PETSC_TRUE, repair, parent));
   PetscFunctionReturn(0);
 }

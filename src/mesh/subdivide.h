@@ -31,6 +31,8 @@ PETSC_INTERN PetscErrorCode EqmVicinityRemoveDuplicates(EqmVicinity *vicinity, P
 /* Per cell, whether to turn it over: of each piece the minority of the triangles, all tetrahedra of negative volume.
    Collective. */
 PETSC_INTERN PetscErrorCode EqmVicinityChooseTurns(EqmSoup soup, const EqmVicinity *vicinity, PetscBool *turn);
+/* EqmSoupRepair; with `split` false no cell is split. Collective. */
+PETSC_INTERN PetscErrorCode EqmSoupRepairWith(EqmSoup *soup, PetscBool split, EqmRepair *repair, PetscInt **parent);
 PETSC_INTERN PetscErrorCode EqmSoupAssemble(EqmSoup *soup, PetscInt num_groups, const EqmVertexGroup *groups,
                                             EqmCellList *list, PetscInt **parent);
 

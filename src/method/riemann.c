@@ -109,7 +109,14 @@ static PetscErrorCode Backtrack(EqmMethod method, EqmIterate iterate, PetscReal 
 
   PetscFunctionBegin;
   PetscCall(EqmRiemannStepInOrder(method->problem, data->riemann, &iterate->place, data->direction, t));
-  for (PetscInt trial = 0; trial < MOST_TRIALS; trial++) {
+  if (*t < PETSC_MACHINE_EPSILON) { /* with so few triangles the best map of the boundary is none */
+    *t = 0.;
+    PetscCall(PetscStrncpy(method->message,
+                           "neighbours on the boundary run together: the mesh is too coarse there to keep its angles; "
+                           "refine it (equimap convert -refine 2)",
+                           sizeof(method->message)));
+  }
+  for (PetscInt trial = 0; trial<MOST_TRIALS && * t> 0.; trial++) {
     PetscCall(EqmRiemannMove(method->problem, data->riemann, &iterate->place, *t, data->direction, &data->trial));
     PetscCall(EqmRiemannEnergy(method->problem, data->riemann, &data->trial, energy, data->trial_gradient));
     if (*energy - iterate->objective <= 1e-4 * *t * slope) PetscFunctionReturn(0);

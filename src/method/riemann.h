@@ -13,6 +13,8 @@
    the disk to itself change the first two terms only by the discretisation error, so that without it the iterates would
    drift. */
 typedef struct _p_EqmRiemann *EqmRiemann;
+/* Gaps between neighbours on the circle that the arithmetic tells from none. */
+#define EQM_RIEMANN_LEAST_GAP 1e-12
 struct _p_EqmRiemann {
   PetscInt num_boundary; /* owned vertices on the boundary */
   PetscInt *boundary;    /* their local numbers */
@@ -31,7 +33,8 @@ PETSC_INTERN PetscErrorCode EqmRiemannCreateVec(EqmProblem problem, EqmRiemann r
 /* Add t times `angles` to the boundary's angles; the interior is not moved. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannMove(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from, PetscReal t,
                                            Vec angles, EqmPlace *to);
-/* The largest t in (0, 1] for which t times `angles` keeps the boundary's order, with a margin. Collective. */
+/* The largest t in (0, 1] for which t times `angles` keeps the boundary's order, with a margin; 0 where two
+   neighbours have run together already. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from,
                                                   Vec angles, PetscReal *t);
 /* E and its gradient with respect to the angles for the boundary of `place`; moves the interior to its harmonic images.

@@ -108,7 +108,7 @@ PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, con
                            *const v = velocity + 2 * j;
     const PetscReal gap = PetscAtan2Real(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]);
     const PetscReal opening = q[0] * v[1] - q[1] * v[0] - p[0] * u[1] + p[1] * u[0];
-    if (opening < 0.) local = PetscMin(local, -.9 * gap / opening);
+    if (opening < 0.) local = PetscMin(local, -.9 * PetscMax(0., gap - EQM_RIEMANN_LEAST_GAP) / opening);
   }
   PetscCall(MPIU_Allreduce(&local, t, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
   PetscCall(PetscFree(velocity));

@@ -14,6 +14,7 @@ typedef struct {
   PetscReal weld_tolerance; /* of `weld`: distance, as a share of the mesh's diameter */
   PetscReal handle_length;  /* of `handles`: loops up to this length, as a share of the mesh's diameter, are cut */
   PetscBool repair;         /* at the end EqmSoupRepair */
+  PetscBool keeps_cells;    /* which then splits no cell */
   const char *target;       /* a target's name, or NULL: that of the mesh's topology */
 } EqmPrepareOptions;
 

@@ -206,7 +206,7 @@ PetscErrorCode EqmStepRepair(const EqmPrepareOptions *options, EqmChange *change
 
   PetscFunctionBegin;
   PetscCall(EqmSoupCopy(change->soup, &repaired));
-  PetscCall(EqmSoupRepair(&repaired, r, &parent));
+  PetscCall(EqmSoupRepairWith(&repaired, (PetscBool)!options->keeps_cells, r, &parent));
   report->count = r->duplicate_cells_removed + r->degenerate_cells_removed + r->cells_flipped + r->cells_split;
   PetscCall(PetscSNPrintf(report->what, sizeof(report->what),
                           "%" PetscInt64_FMT " duplicates and %" PetscInt64_FMT

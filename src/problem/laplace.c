@@ -58,8 +58,8 @@ PetscErrorCode EqmGroupFactor(EqmProblem problem, const PetscReal *weights, cons
   PetscCall(EqmLinearFactor(problem->scalar, CellLaplacian, &matrix, 1., &success));
   if (!success) {
     EqmFail(problem->comm, EQM_ERR_MESH,
-            "a Laplacian of this mesh is not positive definite (very obtuse or degenerate cells); remesh, or start "
-            "with -start tutte");
+            "a Laplacian of this mesh is not positive definite (very obtuse or degenerate cells); remesh, or "
+            "take another start");
   }
   PetscFunctionReturn(0);
 }

@@ -9,10 +9,12 @@ PetscErrorCode EqmSolverSetStage(EqmSolver solver, PetscInt stage)
   EqmSolverSettings *const set = &solver->settings;
   char number[32], previous[PETSC_MAX_PATH_LEN];
   PetscBool there, before;
+  size_t length;
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(number, sizeof(number), ".%" PetscInt_FMT, stage));
-  PetscCall(PetscStrlen(number, &solver->checkpoints.suffix));
+  PetscCall(PetscStrlen(number, &length));
+  solver->checkpoints.suffix += length;
   if (set->checkpoint[0]) PetscCall(PetscStrlcat(set->checkpoint, number, sizeof(set->checkpoint)));
   if (!set->restart[0]) PetscFunctionReturn(0);
   PetscCall(PetscStrlcat(set->restart, number, sizeof(set->restart)));

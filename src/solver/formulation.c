@@ -81,6 +81,7 @@ static const EqmFormulation formulations[] = {
      .unfold = EqmSphereUnfold,
      .starts = EQM_STARTS_SPHERE,
      .takes_balance = PETSC_TRUE,
+     .other_starts = "gauss,cascade,tutte,linear",
      METHODS(on_sphere)},
     {.target = "conformal",
      .domain = "disk",

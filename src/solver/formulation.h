@@ -24,7 +24,8 @@ typedef struct {
   PetscErrorCode (*unfold)(EqmProblem, EqmIterate, PetscInt64 *before, PetscInt64 *after); /* NULL: cannot */
   PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
   EqmStartFamily starts;
-  PetscBool takes_balance;          /* -balance has a meaning */
+  const char *other_starts; /* tried one after the other where the default's leads far from the objective; NULL: none */
+  PetscBool takes_balance;  /* -balance has a meaning */
   const EqmMethodDefaults *methods; /* the first is -method auto */
   PetscInt num_methods;
 } EqmFormulation;

@@ -64,6 +64,7 @@ static PetscErrorCode ExceedsLimit(EqmSolver solver, PetscBool *stop)
   PetscFunctionBegin;
   PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
   *stop = PETSC_TRUE;
+  solver->limited = PETSC_TRUE;
   if (solver->iterate->number >= set->max_it) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
                             "stopped after -max_it %" PetscInt_FMT " iterations", set->max_it));
@@ -72,6 +73,7 @@ static PetscErrorCode ExceedsLimit(EqmSolver solver, PetscBool *stop)
                             "stopped after -max_factorizations %" PetscInt_FMT, set->max_factorizations));
   } else {
     PetscCall(EqmCheckpointStopRequested(solver, stop));
+    solver->limited = *stop;
   }
   PetscFunctionReturn(0);
 }
@@ -121,9 +123,23 @@ static PetscBool IsExact(EqmSolver solver)
                      totals->energy <= PetscSqr(1e-11) * totals->total);
 }
 
+/* Has the method come to rest where the slope is gone? Then the minimum is reached, whatever it is. */
+static PetscBool IsStationary(EqmSolver solver)
+{
+  const PetscReal flat = 1e-6, level = 1e-8; /* of the steepest slope; of the objective, in the last step */
+  const PetscInt last = solver->num_history - 1;
+  const PetscReal slope = last < 2 ? -1. : solver->history[last].gradient_norm;
+  PetscReal steepest = 0.;
+
+  for (PetscInt k = 0; k <= last; k++) steepest = PetscMax(steepest, solver->history[k].gradient_norm);
+  if (slope < 0. || slope > flat * steepest) return PETSC_FALSE;
+  return (PetscBool)(solver->objectives[last - 1] - solver->objectives[last] <=
+                     level * PetscAbsReal(solver->objectives[last]));
+}
+
 PetscErrorCode EqmJudgeEnd(EqmSolver solver, EqmStep outcome)
 {
-  const PetscBool converged = (PetscBool)(outcome == EQM_STEP_CONVERGED || IsExact(solver));
+  const PetscBool converged = (PetscBool)(outcome == EQM_STEP_CONVERGED || IsExact(solver) || IsStationary(solver));
   const char *const usual =
       converged ? "the next step would change the objective by rounding only"
                 : "no step decreases the objective any more: the limit of this method and this arithmetic";

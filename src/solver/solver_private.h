@@ -49,6 +49,7 @@ struct _p_EqmSolver {
   char message[EQM_MESSAGE_MAX];
   PetscInt begun_again; /* the row of the history at which the iterations began once more after a collapse; 0: never */
   PetscBool collapsed;  /* the iterations ended at no map of the solid to the ball (mend.c) */
+  PetscBool limited;    /* the iterations ended by a limit of the user's, not by themselves */
   EqmCheckpoints checkpoints;
 
   EqmMonitor monitor;
@@ -75,6 +76,13 @@ PETSC_INTERN PetscErrorCode EqmSolverNotify(void *solver, const char *text);
 PETSC_INTERN PetscErrorCode EqmSolverNotifyUnfolded(EqmSolver solver, const char *when);
 /* Prefix of the options of the surface's map in the ball's start. */
 #define EQM_BOUNDARY_PREFIX "boundary_"
+/* ---- attempts.c: where the default's start has led far from the objective, other starts; the best map is the
+   solver's. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverTryOtherStarts(EqmSolver solver);
+/* Has the default's start left folds that the method cannot take? Not collective. */
+PETSC_INTERN PetscBool EqmSolverIsBlocked(EqmSolver solver);
+/* ---- run.c: from the first map to the end of iterations and unfolding. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverRun(EqmSolver solver);
 /* ---- intrinsic.c: the second attempt of EqmSolverSolve. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverStraighten(EqmSolver solver);
 

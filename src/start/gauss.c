@@ -96,8 +96,7 @@ static PetscErrorCode SmoothUntilUnfolded(EqmProblem problem, EqmIterate iterate
   PetscFunctionReturn(0);
 }
 
-/* The steps are those of the smoothing, at most. */
-static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+PetscErrorCode EqmSphereGauss(EqmProblem problem, EqmIterate iterate, PetscInt steps)
 {
   const PetscReal origin[3] = {0., 0., 0.};
 
@@ -105,8 +104,16 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   PetscCall(SumNormals(problem->mesh, iterate->place.x));
   PetscCall(
       EqmPlaceOntoSphere(problem->domain, origin, &iterate->place)); /* of degree one, however many triangles fold */
+  if (steps > 0) PetscCall(SmoothUntilUnfolded(problem, iterate, steps));
+  PetscFunctionReturn(0);
+}
+
+/* The steps are those of the smoothing, at most. */
+static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSphereGauss(problem, iterate, options->steps));
   if (options->steps == 0) PetscFunctionReturn(0);
-  PetscCall(SmoothUntilUnfolded(problem, iterate, options->steps));
   PetscCall(EqmSphereUnfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
   PetscFunctionReturn(0);
 }

@@ -208,7 +208,7 @@ static PetscErrorCode RankLevels(const Cut *cut, PetscReal level[NUM_LEVELS], Pe
 
 /* The cheapest level whose curve closes. Where the function is flat, in limbs that hold neither pole, rounding can tear
    a curve to pieces. */
-static PetscErrorCode ChooseLevel(Cut *cut)
+static PetscErrorCode ChooseLevel(Cut *cut, PetscBool *found)
 {
   PetscReal level[NUM_LEVELS], cost[NUM_LEVELS];
   PetscBool closed = PETSC_FALSE;
@@ -223,10 +223,7 @@ static PetscErrorCode ChooseLevel(Cut *cut)
     PetscCall(CollectCurve(cut));
     closed = WalkCurve(cut);
   }
-  if (!closed) {
-    EqmFail(cut->problem->comm, EQM_ERR_MESH,
-            "-start tutte: no closed curve was found that cuts the surface in two disks; take another start");
-  }
+  *found = closed;
   PetscFunctionReturn(0);
 }
 
@@ -280,7 +277,7 @@ static PetscErrorCode MapHemispheres(Cut *cut, EqmIterate iterate, const PetscRe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate)
+PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate, PetscBool *found)
 {
   const EqmMesh mesh = problem->mesh;
   Cut cut = {.problem = problem};
@@ -294,8 +291,8 @@ PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate)
   PetscCall(EqmMeshUpdateGhosts(mesh, 1, cut.input));
   PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_UNIFORM, NULL, weights));
   PetscCall(ComputeHeight(&cut, weights, group));
-  PetscCall(ChooseLevel(&cut));
-  PetscCall(MapHemispheres(&cut, iterate, weights, group));
+  PetscCall(ChooseLevel(&cut, found));
+  if (*found) PetscCall(MapHemispheres(&cut, iterate, weights, group));
   PetscCall(PetscFree(cut.crossing));
   PetscCall(PetscFree4(cut.input, cut.height, weights, group));
   PetscFunctionReturn(0);
@@ -305,10 +302,15 @@ PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate)
 static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
   PetscReal *weights;
+  PetscBool found;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * problem->mesh->num_local_cells, &weights));
-  PetscCall(EqmSphereTutte(problem, iterate));
+  PetscCall(EqmSphereTutte(problem, iterate, &found));
+  if (!found) {
+    EqmFail(problem->comm, EQM_ERR_MESH,
+            "-start tutte: no closed curve was found that cuts the surface in two disks; leave -start out");
+  }
   for (PetscInt k = 0; k < options->steps; k++) PetscCall(EqmSphereFixedPointStep(problem, iterate, k, weights));
   PetscCall(EqmSphereUnfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
   PetscCall(PetscFree(weights));

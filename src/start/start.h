@@ -67,8 +67,12 @@ PETSC_INTERN PetscErrorCode EqmSphereLinear(EqmProblem problem, EqmIterate itera
    vertex. Collective. */
 PETSC_INTERN PetscErrorCode EqmDipoleSolve(EqmProblem problem, const EqmPlace *place, const PetscInt corner[3],
                                            const PetscReal charge[6], PetscReal *z);
-/* Tutte's map by two hemispheres (004 section 5.1), with equal weights; may fold along the equator. Collective. */
-PETSC_INTERN PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate);
+/* Tutte's map by two hemispheres (004 section 5.1), with equal weights; may fold along the equator. Where no closed
+   curve was `found` that cuts the surface in two, the map is as it was. Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate, PetscBool *found);
+/* Vertex normals (004 Definition 5.1), smoothed by heat flow for as long as triangles fold, `steps` times at most.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmSphereGauss(EqmProblem problem, EqmIterate iterate, PetscInt steps);
 /* The harmonic map for the angle weights, cap by cap, centred; where cells would become too small for the arithmetic,
    with a conductivity that falls towards the tips of limbs, which the problem's angle weights keep. Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereResolved(EqmProblem problem, EqmIterate iterate);

@@ -1,0 +1,29 @@
+/* One run of a map command on one mesh, and which of two runs the user gets. */
+#ifndef EQM_MAPRUN_H
+#define EQM_MAPRUN_H
+
+#include <equimap.h>
+#include "base/stop.h"
+#include "intake/intake.h"
+
+/* A mesh, its solver, and what was found. */
+typedef struct {
+  EqmMesh mesh;
+  EqmSolver solver;
+  EqmMap found, map; /* of the mesh that was mapped; of the file's mesh: the same where nothing was mended */
+} EqmMapRun;
+
+/* Solve on the mesh that `input` maps. Collective. Errors: those of the solver. */
+PETSC_INTERN PetscErrorCode EqmMapRunSolve(const char *command, const EqmIntake *input, const EqmStopFile *stop_file,
+                                           EqmLedger ledger, EqmMapRun *run);
+/* Where the repair of `input` has split cells: minimise what the user gets, on the file's own cells; from the start, as
+   without a repair, and if that ends with folds from the map that `run` has found. The best map of these cells stays
+   in `run`.
+   `whole` - what that run has worked on; to be reset after `run` is destroyed. Collective. */
+PETSC_INTERN PetscErrorCode EqmMapRunWithoutSplits(const char *command, const EqmIntakeOptions *options,
+                                                   const EqmIntake *input, const EqmStopFile *stop_file,
+                                                   EqmLedger ledger, EqmMapRun *run, EqmIntake *whole);
+/* Collective. */
+PETSC_INTERN PetscErrorCode EqmMapRunDestroy(EqmMapRun *run);
+
+#endif
