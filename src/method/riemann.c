@@ -13,6 +13,19 @@ typedef struct {
   Vec gradient, trial_gradient, direction;
 } Riemann;
 
+/* Where angles are so obtuse that harmonic functions leave the disk, there may be no map to begin with. */
+static PetscErrorCode CheckOrder(EqmMethod method, const EqmPlace *place)
+{
+  PetscReal smallest;
+
+  PetscFunctionBegin;
+  PetscCall(EqmRiemannSmallestGap(method->problem, place, &smallest));
+  if (smallest > EQM_RIEMANN_LEAST_GAP) PetscFunctionReturn(0);
+  EqmFail(method->comm, EQM_ERR_MESH,
+          "neighbours on the boundary run together as the map begins: the mesh is too coarse, or its triangles are too "
+          "obtuse, to keep its angles; refine it (equimap convert -refine 2)");
+}
+
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
   enum { MEMORY = 20 };
@@ -27,6 +40,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(VecDuplicate(data->gradient, &data->direction));
   PetscCall(EqmPairsCreate(data->gradient, MEMORY, &data->pairs));
   PetscCall(EqmRiemannCentre(method->problem, data->riemann, &iterate->place));
+  PetscCall(CheckOrder(method, &iterate->place));
   PetscCall(EqmLoopMetricCreate(method->problem->mesh, data->riemann->num_boundary, data->riemann->boundary,
                                 iterate->place.x, &data->metric));
   PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &data->metric_of));

@@ -37,6 +37,8 @@ PETSC_INTERN PetscErrorCode EqmRiemannMove(EqmProblem problem, EqmRiemann rieman
    neighbours have run together already. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from,
                                                   Vec angles, PetscReal *t);
+/* The smallest gap between neighbours on the boundary; not positive where they are out of order. Collective. */
+PETSC_INTERN PetscErrorCode EqmRiemannSmallestGap(EqmProblem problem, const EqmPlace *place, PetscReal *smallest);
 /* E and its gradient with respect to the angles for the boundary of `place`; moves the interior to its harmonic images.
    Two solves, one evaluation. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannEnergy(EqmProblem problem, EqmRiemann riemann, EqmPlace *place, PetscReal *energy,

@@ -115,6 +115,22 @@ PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, con
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmRiemannSmallestGap(EqmProblem problem, const EqmPlace *place, PetscReal *smallest)
+{
+  const EqmMesh mesh = problem->mesh;
+  PetscReal local = 2. * PETSC_PI;
+
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
+    const PetscReal *const p = place->x + 2 * mesh->boundary_facets[2 * e], *const q =
+                                                                                place->x +
+                                                                                2 * mesh->boundary_facets[2 * e + 1];
+    local = PetscMin(local, PetscAtan2Real(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]));
+  }
+  PetscCall(MPIU_Allreduce(&local, smallest, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
+  PetscFunctionReturn(0);
+}
+
 /* Add the enclosed area's part: to the energy -1/2 sin of each gap, to the gradient of its two ends (per owned vertex)
    +-1/2 cos. */
 static PetscReal AddArea(EqmMesh mesh, const PetscReal *x, PetscReal *slope)
