@@ -176,6 +176,9 @@ PETSC_EXTERN PetscErrorCode EqmMapAddText(EqmMap map, const char *key, const cha
    input mesh with the map as fields. Each file appears whole or not at all, and one that was there survives a failure.
    Collective. Errors: EQM_ERR_USAGE (unknown suffix; then nothing is written), EQM_ERR_IO. */
 PETSC_EXTERN PetscErrorCode EqmMapWrite(EqmMap map, const char *files);
+/* EqmMapSetImageScale - mesh formats get the images multiplied by this factor (default 1), result files as they are.
+   Not collective. Errors: EQM_ERR_USAGE (not positive and finite). */
+PETSC_EXTERN PetscErrorCode EqmMapSetImageScale(EqmMap map, PetscReal scale);
 /* EqmMapWriteTexture - write the surface itself with its map as texture coordinates, to OBJ or PLY.
 
    Collective. The unit disk goes to the square [0, 1]^2 by (1 + x)/2, the unit square is the texture as it is; a point

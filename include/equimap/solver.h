@@ -64,7 +64,7 @@ typedef enum {
 /* A function that is called for such events; `context` is that of EqmSolverSetMonitor. Collective. */
 typedef PetscErrorCode (*EqmMonitor)(EqmSolver solver, EqmMonitorEvent event, const char *text, void *context);
 /* EqmSolverSetMonitor - call `monitor` as the solver gets on, on every rank; NULL (as created): nothing. The option
-   -quiet takes it away. */
+   -monitor sets EqmSolverMonitorText where there is none, -quiet takes any away. */
 PETSC_EXTERN PetscErrorCode EqmSolverSetMonitor(EqmSolver solver, EqmMonitor monitor, void *context);
 /* EqmSolverMonitorText - the program's text monitor: one line that is overwritten on a terminal, plain
    lines now and then elsewhere. `context` is not used. Collective. */

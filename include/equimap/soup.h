@@ -8,6 +8,17 @@
 /* Longest note of a reader, terminating zero included. */
 #define EQM_SOUP_NOTE 256
 
+/* Longest name of a field, terminating zero included. */
+#define EQM_FIELD_NAME 128
+
+/* Numbers per vertex or per cell that a file has beside its mesh, in input numbering. */
+typedef struct {
+  char name[EQM_FIELD_NAME];
+  PetscBool on_cells;
+  PetscInt width;    /* numbers per vertex or cell */
+  PetscReal *values; /* width * vertices or cells; PetscMalloc'ed */
+} EqmMeshField;
+
 /* A mesh on one rank, as a parser makes it and as a writer takes it. Indices count from 0 in input numbering. */
 typedef struct {
   PetscInt num_vertices;
@@ -17,7 +28,10 @@ typedef struct {
   PetscInt *cells;     /* cell_size * num_cells; PetscMalloc'ed */
   PetscReal *texture;  /* 2 * cell_size * num_cells, the texture coordinates of each corner, or NULL; PetscMalloc'ed */
   char note[EQM_SOUP_NOTE]; /* what the reader changed, in plain words; "": nothing */
+  char left[EQM_SOUP_NOTE]; /* what of the file the reader left out, a list; "": nothing */
   char *metadata;           /* what the file says beside the mesh, lines "key<tab>value", or NULL; PetscMalloc'ed */
+  PetscInt num_fields;
+  EqmMeshField *fields; /* what the file has per vertex and cell; PetscMalloc'ed, or NULL */
 } EqmSerialMesh;
 
 /* A slab of the file's mesh on each rank. */
@@ -32,6 +46,9 @@ PETSC_EXTERN PetscErrorCode EqmSoupGetVertices(EqmSoup soup, PetscInt *start, Pe
                                                const PetscReal **vertices);
 /* EqmSoupGetCells - this rank's slab: input cells `start` to `end` - 1, as input vertex numbers. */
 PETSC_EXTERN PetscErrorCode EqmSoupGetCells(EqmSoup soup, PetscInt *start, PetscInt *end, const PetscInt **cells);
+/* EqmSoupGetFields - what the file has per vertex and cell beside the mesh: this rank's slabs, names and widths the
+   same on every rank. Texture coordinates are a field "texcoord" on cells, two numbers per corner. */
+PETSC_EXTERN PetscErrorCode EqmSoupGetFields(EqmSoup soup, PetscInt *num_fields, const EqmMeshField **fields);
 /* EqmSoupGetFile - where it came from. */
 PETSC_EXTERN PetscErrorCode EqmSoupGetFile(EqmSoup soup, const char **file);
 

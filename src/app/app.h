@@ -40,6 +40,9 @@ PETSC_INTERN PetscErrorCode EqmLayoutHelpOptions(PetscOptionItems *PetscOptionsO
 /* -resume: where the file of -checkpoint is there already, it becomes that of -restart. Errors: EQM_ERR_USAGE.
    Collective. */
 PETSC_INTERN PetscErrorCode EqmTakeResume(void);
+/* Say in one line what of the mesh's file will not be in `files`, a list with commas: fields that their formats do not
+   hold, and, of a mesh, what its reader left out. is_map - they hold the map, not the mesh. Collective. */
+PETSC_INTERN PetscErrorCode EqmPrintDropped(EqmSoup soup, const char *files, PetscBool is_map);
 /* Remember which options PETSc has that are none of the command line's. Call before others are inserted. Collective. */
 PETSC_INTERN PetscErrorCode EqmNoteForeignOptions(int argc, char **argv);
 PETSC_INTERN PetscErrorCode EqmForgetForeignOptions(void);

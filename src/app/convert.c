@@ -87,6 +87,21 @@ static PetscErrorCode TakeBoundary(EqmSoup *soup)
   PetscFunctionReturn(0);
 }
 
+/* All that makes another mesh of it; the fields of the file then belong to no vertex and cell any more. */
+static PetscErrorCode Change(const ConvertOptions *options, EqmSoup *soup)
+{
+  const PetscInt num_fields = (*soup)->num_fields;
+
+  PetscFunctionBegin;
+  PetscCall(Prepare(&options->prepare, soup));
+  if (options->refine) PetscCall(EqmSoupRefine(soup, options->refine));
+  if (options->boundary) PetscCall(TakeBoundary(soup));
+  if (num_fields && !(*soup)->num_fields)
+    PetscCall(PetscPrintf((*soup)->comm, "note: left out: %" PetscInt_FMT " fields, as it is another mesh now\n",
+                          num_fields));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode PrintUsage(void)
 {
   PetscFunctionBegin;
@@ -121,10 +136,9 @@ PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));
   if (soup->note[0]) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "note: %s: %s\n", soup->file, soup->note));
   if (options.scale != 1.) PetscCall(EqmSoupScale(soup, options.scale));
-  PetscCall(Prepare(&options.prepare, &soup));
-  if (options.refine) PetscCall(EqmSoupRefine(&soup, options.refine));
-  if (options.boundary) PetscCall(TakeBoundary(&soup));
+  PetscCall(Change(&options, &soup));
   PetscCall(EqmSoupWrite(soup, line->argument[1]));
+  PetscCall(EqmPrintDropped(soup, line->argument[1], PETSC_FALSE));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %" PetscInt_FMT " vertices, %" PetscInt_FMT " %s -> %s\n",
                         line->argument[0], soup->num_vertices, soup->num_cells,
                         soup->cell_size == 3 ? "triangles" : "tetrahedra", line->argument[1]));

@@ -1,6 +1,7 @@
 /* equimap disk | square | sphere MESH -o OUT: read, diagnose, distribute, minimise, measure, write. */
 #include "app.h"
 #include "mesh/soup_private.h"
+#include "base/progress.h"
 #include "base/stop.h"
 #include "format/format.h"
 #include "intake/intake.h"
@@ -18,6 +19,7 @@ typedef struct {
   EqmStopFile stop_file;
   char usage[PETSC_MAX_PATH_LEN];
   PetscInt hessian_eigenvalues;
+  PetscReal radius;
   PetscBool dry_run;
 } MapOptions;
 
@@ -35,6 +37,10 @@ static PetscErrorCode ReadOptions(MapOptions *options)
                          "write the surface itself with the map as texture coordinates: .obj (vt) or .ply (s, t); "
                          "of spheres longitude and latitude",
                          NULL, "", options->uv, sizeof(options->uv), &options->has_uv));
+  PetscCall(PetscOptionsReal("-radius",
+                             "multiply the images by this in mesh formats: 100 for HCP's spheres; .h5 keeps the unit "
+                             "target, FreeSurfer's spheres have 100 always",
+                             NULL, options->radius, &options->radius, NULL));
   PetscCall(PetscOptionsString("-summary", "write the run's figures as JSON", NULL, "", options->summary,
                                sizeof(options->summary), &options->has_summary));
   PetscCall(PetscOptionsString("-history", "write a row per iteration as CSV", NULL, "", options->history,
@@ -98,6 +104,8 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
             line->command, line->num_arguments, line->command);
   }
   if (!options->has_output) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "no output named; add -o OUT.h5");
+  if (!(options->radius > 0.) || PetscIsInfOrNanReal(options->radius))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-radius %g: give a positive number", (double)options->radius);
   if (options->hessian_eigenvalues < 0)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-hessian_eigenvalues: give 0 or more");
   if (options->hessian_eigenvalues > 0 && !EqmHessianAvailable()) {
@@ -131,12 +139,18 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
 static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap map)
 {
   EqmStatus status;
+  EqmSoup soup;
 
   PetscFunctionBegin;
   PetscCall(EqmMapGetStatus(map, &status, NULL));
   PetscCall(EqmMapSetCost(map, ledger));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
-  if (status != EQM_STATUS_STOPPED) PetscCall(EqmMapWrite(map, options->output)); /* there is the checkpoint */
+  if (status != EQM_STATUS_STOPPED) { /* there is the checkpoint */
+    PetscCall(EqmMapSetImageScale(map, options->radius));
+    PetscCall(EqmMapWrite(map, options->output));
+    PetscCall(EqmMapGetSoup(map, &soup));
+    PetscCall(EqmPrintDropped(soup, options->output, PETSC_TRUE));
+  }
   if (options->has_uv && status != EQM_STATUS_STOPPED) PetscCall(EqmMapWriteTexture(map, options->uv));
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   if (options->has_histogram) PetscCall(EqmMapWriteHistogram(map, options->histogram));
@@ -274,7 +288,7 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
    EQM_ERR_USAGE, and those of EqmIntakeRead, EqmSolverSetFromOptions and EqmMapWrite. */
 PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
 {
-  MapOptions options = {0};
+  MapOptions options = {.radius = 1.};
   EqmLedger ledger;
   EqmIntake input;
 
@@ -288,6 +302,7 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(EqmStopCatchSignals(PETSC_COMM_WORLD));
   if (options.has_checkpoint) PetscCall(EqmStopWatchFile(PETSC_COMM_WORLD, options.checkpoint, &options.stop_file));
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
+  if (!options.input.quiet) PetscCall(EqmLedgerSetHook(ledger, EqmPhasePrint));
   PetscCall(EqmIntakeRead(PETSC_COMM_WORLD, &options.input, ledger, &input));
   if (options.dry_run) {
     PetscCall(PetscPrintf(PETSC_COMM_WORLD,

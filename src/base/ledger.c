@@ -1,9 +1,11 @@
 /* Clocks and counters of a run: seconds per phase and per kind of work, counted work, peak memory. */
 #include <equimap/base.h>
+#include "base/progress.h"
 #include <sys/resource.h>
 
 struct _p_EqmLedger {
   MPI_Comm comm;
+  EqmPhaseHook hook;
   EqmWork work;
   PetscLogStage stage[EQM_NUM_PHASES];
   PetscLogEvent event[EQM_NUM_EVENTS];
@@ -56,9 +58,26 @@ PetscErrorCode EqmLedgerDestroy(EqmLedger *ledger)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmLedgerSetHook(EqmLedger ledger, EqmPhaseHook hook)
+{
+  PetscFunctionBegin;
+  ledger->hook = hook;
+  PetscFunctionReturn(0);
+}
+
+/* Iterations and checkpoints are told of by others. */
+static PetscErrorCode CallHook(EqmLedger ledger, EqmPhase phase, PetscReal seconds)
+{
+  PetscFunctionBegin;
+  if (ledger->hook && phase != EQM_PHASE_MINIMISE && phase != EQM_PHASE_CHECKPOINT)
+    PetscCall(ledger->hook(ledger->comm, phase_names[phase], seconds));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmPhaseBegin(EqmLedger ledger, EqmPhase phase)
 {
   PetscFunctionBegin;
+  PetscCall(CallHook(ledger, phase, -1.));
   PetscCall(PetscLogStagePush(ledger->stage[phase]));
   PetscCall(PetscTime(&ledger->phase_begun[phase]));
   PetscFunctionReturn(0);
@@ -72,6 +91,7 @@ PetscErrorCode EqmPhaseEnd(EqmLedger ledger, EqmPhase phase)
   PetscCall(PetscTime(&now));
   ledger->phase_seconds[phase] += now - ledger->phase_begun[phase];
   PetscCall(PetscLogStagePop());
+  PetscCall(CallHook(ledger, phase, now - ledger->phase_begun[phase]));
   PetscFunctionReturn(0);
 }
 

@@ -39,6 +39,17 @@ PetscErrorCode EqmBuilderAddVertices(EqmBuilder *builder, size_t count, PetscRea
   return 0;
 }
 
+/* Give the cells that were appended to the list the present row. */
+static PetscErrorCode KeepRows(EqmBuilder *builder, EqmCellList *list)
+{
+  size_t known = list->row_capacity ? list->num_rows : 0;
+
+  EqmTry(EqmBuilderGrow(builder->in, sizeof(PetscInt64), known, list->count - known, &list->row_capacity, &list->row));
+  for (; known < list->count; ++known) list->row[known] = builder->row;
+  list->num_rows = known;
+  return 0;
+}
+
 /* EqmBuilderAddCells - append `count` triangles (cell_size 3) or tetrahedra (4); the caller fills `cells`. Not
    collective. The pointer is good until the next call. Errors: EQM_ERR_IO (quiet) if there are too many. */
 PetscErrorCode EqmBuilderAddCells(EqmBuilder *builder, PetscInt cell_size, size_t count, PetscInt **cells)
@@ -49,7 +60,7 @@ PetscErrorCode EqmBuilderAddCells(EqmBuilder *builder, PetscInt cell_size, size_
                         &list->corners));
   *cells = list->corners + (size_t)cell_size * list->count;
   list->count += count;
-  return 0;
+  return builder->has_rows ? KeepRows(builder, list) : 0;
 }
 
 /* EqmBuilderAddTexturePoints - append `count` points of the texture plane; the caller fills `points` (2 * count). Not

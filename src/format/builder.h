@@ -9,7 +9,15 @@
 typedef struct {
   size_t count, capacity; /* cells */
   PetscInt *corners;      /* cell size * capacity */
+  size_t num_rows, row_capacity;
+  PetscInt64 *row; /* per cell, the row of cell fields that belongs to it; NULL: the file has none */
 } EqmCellList;
+
+/* A field as the file has it: one row per vertex, or rows that cells name (EqmBuilderSetRow). */
+typedef struct {
+  EqmMeshField field;
+  size_t num_rows;
+} EqmRawField;
 
 /* A face of more than three corners, which is cut into triangles when all vertices are known. */
 typedef struct {
@@ -31,7 +39,12 @@ typedef struct {
   size_t num_texture_points, texture_capacity;
   PetscReal *texture_points; /* 2 * texture_capacity */
   size_t num_face_corners, face_capacity;
-  PetscInt64 *face;                           /* vertex and texture point of each corner of the face being read */
+  PetscInt64 *face;                    /* vertex and texture point of each corner of the face being read */
+  PetscBool has_rows, rows_are_groups; /* cells have rows; these are the numbers of groups */
+  PetscInt64 row;                      /* of cell fields, for the cells that come next */
+  PetscInt num_fields;
+  EqmRawField *fields;
+  char left[EQM_SOUP_NOTE];                   /* what of the file is left out */
   char other_surface[160], other_volume[160]; /* the first cell of another shape: what it is and where; "" if none */
 } EqmBuilder;
 
@@ -50,6 +63,14 @@ PETSC_INTERN void EqmBuilderNoteOther(EqmBuilder *builder, PetscInt dimension, c
 PETSC_INTERN PetscErrorCode EqmBuilderGrow(EqmInput *in, size_t row_bytes, size_t count, size_t more, size_t *capacity,
                                            void *array);
 PETSC_INTERN PetscErrorCode EqmBuilderCutPolygons(EqmBuilder *builder);
+PETSC_INTERN void EqmBuilderSetRow(EqmBuilder *builder, PetscInt64 row);
+PETSC_INTERN void EqmBuilderSetGroup(EqmBuilder *builder, PetscInt64 group);
+PETSC_INTERN PetscErrorCode EqmBuilderAddField(EqmBuilder *builder, const char *name, size_t name_length,
+                                               PetscBool on_cells, PetscInt64 width, size_t num_rows,
+                                               PetscReal **values);
+PETSC_INTERN PetscErrorCode EqmBuilderDropField(EqmBuilder *builder);
+PETSC_INTERN void EqmBuilderNoteLeft(EqmBuilder *builder, const char *what);
+PETSC_INTERN PetscErrorCode EqmBuilderTakeFields(EqmBuilder *builder, EqmSerialMesh *mesh, const EqmCellList *cells);
 PETSC_INTERN PetscErrorCode EqmBuilderFinish(EqmBuilder *builder, PetscErrorCode code, EqmSerialMesh *mesh);
 
 #endif

@@ -59,6 +59,10 @@ static PetscErrorCode FreeLists(EqmBuilder *builder)
   EqmTry(PetscFree(builder->vertices));
   EqmTry(PetscFree(builder->triangles.corners));
   EqmTry(PetscFree(builder->tetrahedra.corners));
+  EqmTry(PetscFree(builder->triangles.row));
+  EqmTry(PetscFree(builder->tetrahedra.row));
+  while (builder->num_fields) EqmTry(EqmBuilderDropField(builder));
+  EqmTry(PetscFree(builder->fields));
   EqmTry(PetscFree(builder->polygons));
   EqmTry(PetscFree(builder->polygon_corners.corners));
   EqmTry(PetscFree(builder->textured));
@@ -85,6 +89,8 @@ PetscErrorCode EqmBuilderFinish(EqmBuilder *builder, PetscErrorCode code, EqmSer
     mesh->cells = list->corners;
     builder->vertices = NULL;
     list->corners = NULL;
+    EqmTry(EqmBuilderTakeFields(builder, mesh, list));
+    snprintf(mesh->left, sizeof(mesh->left), "%s", builder->left);
   }
   EqmTry(FreeLists(builder));
   return code;

@@ -39,6 +39,8 @@ typedef struct {
   EqmParallelWriter write_parallel;                         /* used instead of `write` where it is there */
   EqmLoader load;                                           /* NULL: a mesh is one file */
   PetscBool writes_texture;                                 /* mesh->texture is written */
+  PetscBool vertex_fields, cell_fields;                     /* which fields are written */
+  PetscBool groups;                                         /* of cell fields the field "group" is written */
 } EqmFormat;
 
 /* A row of the list of formats, in the order of recognition; NULL outside the list. Not collective. */
@@ -57,6 +59,14 @@ PETSC_INTERN PetscErrorCode EqmFormatReadOnRank(const char *file, int *row, EqmS
 /* Write a mesh and its fields from this rank, the format by suffix; see write.c. Not collective. */
 PETSC_INTERN PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                                  PetscInt num_fields, char *error, size_t length);
+/* EqmFormatDescribeDropped - which of a soup's fields a file of this name will not hold: their names, separated by
+   commas; "" if it holds them all. is_map - it is the map that is written. Not collective. */
+PETSC_INTERN void EqmFormatDescribeDropped(const char *file, PetscBool is_map, PetscInt num_fields,
+                                           const EqmMeshField *fields, char *text, size_t length);
+/* The field "group" on cells among the fields of a writer, or NULL. Not collective. */
+PETSC_INTERN const EqmField *EqmFieldGroup(const EqmField *fields, PetscInt num_fields);
+/* The number of a cell's group as an int; 0 where there is none or it is no such number. Not collective. */
+PETSC_INTERN int EqmGroupOfCell(const EqmField *group, PetscInt cell);
 /* Refuse what a format cannot hold: more than 2^31 rows; tetrahedra. EQM_ERR_USAGE (quiet). Not collective. */
 PETSC_INTERN PetscErrorCode EqmRequireSmall(const EqmSerialMesh *mesh, const char *format, char *error, size_t length);
 PETSC_INTERN PetscErrorCode EqmRequireTriangles(const EqmSerialMesh *mesh, const char *format, char *error,

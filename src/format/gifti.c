@@ -4,10 +4,9 @@
 #include "beside.h"
 #include "mesh/mesh_private.h"
 #include "builder.h"
-#include "encoding.h"
+#include "giftiarray.h"
 #include "metadata.h"
 #include "writers.h"
-#include "xml.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,176 +18,28 @@ static PetscBool RecogniseGifti(const char *bytes, size_t length)
   return memmem(bytes, PetscMin(length, 4096), "<GIFTI", 6) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* One DataArray. */
-typedef struct {
-  EqmInput *in;
-  xmlNodePtr node;
-  EqmScalarType type;
-  PetscInt64 num_rows;
-  PetscBool big_endian, column_major;
-  char encoding[32];
-} Array;
-
-static PetscErrorCode ParseArray(EqmInput *in, xmlNodePtr node, Array *array)
-{
-  static const struct {
-    const char *name;
-    EqmScalarType type;
-  } known[] = {{"NIFTI_TYPE_FLOAT32", EQM_SCALAR_FLOAT32},
-               {"NIFTI_TYPE_FLOAT64", EQM_SCALAR_FLOAT64},
-               {"NIFTI_TYPE_INT32", EQM_SCALAR_INT32},
-               {"NIFTI_TYPE_UINT8", EQM_SCALAR_UINT8}};
-  char text[64];
-  PetscInt64 width;
-
-  *array = (Array){.in = in, .node = node};
-  EqmXmlAttribute(node, "DataType", text, sizeof(text));
-  for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); ++i) {
-    if (!strcmp(text, known[i].name)) array->type = known[i].type;
-  }
-  if (!array->type) return EqmXmlReject(in, node, "the DataType \"%s\" is not supported", text);
-  if (!EqmXmlInteger(node, "Dim0", &array->num_rows) || array->num_rows < 0 || array->num_rows > PETSC_MAX_INT ||
-      !EqmXmlInteger(node, "Dim1", &width) || width != 3) {
-    return EqmXmlReject(in, node, "points and triangles need Dim0 (their number) and Dim1=\"3\"");
-  }
-  EqmXmlAttribute(node, "Endian", text, sizeof(text));
-  array->big_endian = strcmp(text, "BigEndian") ? PETSC_FALSE : PETSC_TRUE;
-  EqmXmlAttribute(node, "ArrayIndexingOrder", text, sizeof(text));
-  array->column_major = strcmp(text, "ColumnMajorOrder") ? PETSC_FALSE : PETSC_TRUE;
-  EqmXmlAttribute(node, "Encoding", array->encoding, sizeof(array->encoding));
-  return 0;
-}
-
-/* The bytes of an array that lies in a file beside, at an offset; freed by the caller. */
-static PetscErrorCode TakeExternal(const Array *array, size_t num_bytes, char **bytes)
-{
-  const EqmInput *const in = array->in;
-  char name[256];
-  PetscInt64 offset = 0;
-  const char *content;
-  size_t length;
-
-  EqmXmlAttribute(array->node, "ExternalFileName", name, sizeof(name));
-  (void)EqmXmlInteger(array->node, "ExternalFileOffset", &offset);
-  if (!EqmBesideFind(in->beside, in->beside_end, name, &content, &length))
-    return EqmXmlReject(array->in, array->node, "the file \"%s\" that holds its data is not beside it", name);
-  if (offset < 0 || (size_t)offset > length || num_bytes > length - (size_t)offset)
-    return EqmXmlReject(array->in, array->node, "the file \"%s\" is too short for its data", name);
-  *bytes = malloc(num_bytes + 1);
-  if (!*bytes) return PETSC_ERR_MEM;
-  memcpy(*bytes, content + offset, num_bytes);
-  return 0;
-}
-
-/* The bytes of base64 text, unpacked where they are compressed; freed by the caller, also after a failure. */
-static PetscErrorCode DecodeBytes(const Array *array, const EqmXmlText *text, size_t num_bytes, char **bytes)
-{
-  const size_t most = text->length / 4 * 3 + 3;
-  PetscBool packed = strcmp(array->encoding, "GZipBase64Binary") ? PETSC_FALSE : PETSC_TRUE, fine;
-  size_t length;
-  char *decoded;
-
-  if (!packed && strcmp(array->encoding, "Base64Binary")) {
-    return EqmXmlReject(array->in, array->node, "the Encoding \"%s\" is not supported", array->encoding);
-  }
-  if (packed ? !EqmInflatePlausible(most, num_bytes) : num_bytes > most) {
-    return EqmXmlReject(array->in, array->node,
-                        "its data is too short for the numbers that are announced: it is truncated");
-  }
-  *bytes = malloc(num_bytes + 1);
-  decoded = malloc(most);
-  if (!*bytes || !decoded) {
-    free(decoded);
-    return PETSC_ERR_MEM;
-  }
-  length = EqmBase64Decode(text->text, text->length, decoded, most);
-  fine = packed ? EqmInflate(decoded, length, *bytes, num_bytes) : length == num_bytes ? PETSC_TRUE : PETSC_FALSE;
-  if (fine && !packed) memcpy(*bytes, decoded, num_bytes);
-  free(decoded);
-  return fine ? 0 : EqmXmlReject(array->in, array->node, "its data is damaged or truncated");
-}
-
-static PetscErrorCode ConvertBytes(const Array *array, const char *bytes, PetscReal *reals, PetscInt64 *integers)
-{
-  const size_t size = EqmScalarSize(array->type);
-
-  for (PetscInt64 i = 0; i < 3 * array->num_rows; ++i) {
-    if (reals) {
-      reals[i] = EqmLoadReal(bytes + (size_t)i * size, array->type, array->big_endian);
-    } else {
-      integers[i] = EqmLoadInteger(bytes + (size_t)i * size, array->type, array->big_endian);
-    }
-  }
-  return 0;
-}
-
-/* 3 * num_rows numbers as they follow in the file, into `reals` or else `integers`. */
-static PetscErrorCode ReadNumbers(const Array *array, PetscReal *reals, PetscInt64 *integers)
-{
-  xmlNodePtr data = EqmXmlChild(array->node, "Data");
-  const size_t num_bytes = 3 * (size_t)array->num_rows * EqmScalarSize(array->type);
-  EqmXmlText text;
-  char *bytes = NULL;
-  PetscErrorCode code;
-
-  if (!strcmp(array->encoding, "ExternalFileBinary")) {
-    code = TakeExternal(array, num_bytes, &bytes);
-    if (!code) code = ConvertBytes(array, bytes, reals, integers);
-    free(bytes);
-    return code;
-  }
-  if (!data) return EqmXmlReject(array->in, array->node, "it has no Data");
-  EqmXmlGetText(data, &text);
-  if (!strcmp(array->encoding, "ASCII")) {
-    code = EqmXmlParseNumbers(array->in, data, &text, 3 * array->num_rows, reals, integers);
-  } else {
-    code = DecodeBytes(array, &text, num_bytes, &bytes);
-    if (!code) code = ConvertBytes(array, bytes, reals, integers);
-  }
-  free(bytes);
-  EqmXmlTextReset(&text);
-  return code;
-}
-
-/* Index of entry k of row i among the numbers of the file. */
-static inline size_t IndexOf(const Array *array, PetscInt64 i, PetscInt64 k)
-{
-  return (size_t)(array->column_major ? k * array->num_rows + i : 3 * i + k);
-}
-
-/* However well they are packed, can the file hold the numbers? To be checked before memory is allocated for them. */
-static PetscErrorCode CheckRoom(const Array *array)
-{
-  const EqmInput *const in = array->in;
-  const size_t file_bytes = (size_t)(in->end - in->start) + (size_t)(in->beside_end - in->beside);
-
-  if (EqmInflatePlausible(file_bytes, 3 * (size_t)array->num_rows)) return 0;
-  return EqmXmlReject(array->in, array->node,
-                      "the file is too short for the numbers that are announced: it is truncated");
-}
-
 static PetscErrorCode ParsePoints(EqmInput *in, xmlNodePtr node, EqmBuilder *builder)
 {
-  Array array;
+  EqmGiftiArray array;
   PetscReal *x, *numbers;
   PetscErrorCode code;
 
   if (builder->num_vertices) return EqmXmlReject(in, node, "a second point set: split the file");
-  EqmTry(ParseArray(in, node, &array));
-  EqmTry(CheckRoom(&array));
+  EqmTry(EqmGiftiParseArray(in, node, 3, &array));
+  EqmTry(EqmGiftiCheckRoom(&array));
   EqmTry(EqmBuilderAddVertices(builder, (size_t)array.num_rows, &x));
   EqmTry(PetscMalloc1(3 * array.num_rows + 1, &numbers));
-  code = ReadNumbers(&array, numbers, NULL);
-  for (PetscInt64 i = 0; !code && i < 3 * array.num_rows; ++i) x[i] = numbers[IndexOf(&array, i / 3, i % 3)];
+  code = EqmGiftiReadNumbers(&array, numbers, NULL);
+  for (PetscInt64 i = 0; !code && i < 3 * array.num_rows; ++i) x[i] = numbers[EqmGiftiIndex(&array, i / 3, i % 3)];
   EqmTry(PetscFree(numbers));
   return code;
 }
 
-static PetscErrorCode AddTriangles(const Array *array, const PetscInt64 *numbers, EqmBuilder *builder)
+static PetscErrorCode AddTriangles(const EqmGiftiArray *array, const PetscInt64 *numbers, EqmBuilder *builder)
 {
   for (PetscInt64 i = 0; i < array->num_rows; ++i) {
-    const PetscInt64 corners[3] = {numbers[IndexOf(array, i, 0)], numbers[IndexOf(array, i, 1)],
-                                   numbers[IndexOf(array, i, 2)]};
+    const PetscInt64 corners[3] = {numbers[EqmGiftiIndex(array, i, 0)], numbers[EqmGiftiIndex(array, i, 1)],
+                                   numbers[EqmGiftiIndex(array, i, 2)]};
 
     EqmTry(EqmBuilderAddFace(builder, NULL, (PetscInt64)builder->num_vertices, 3, corners));
   }
@@ -197,14 +48,14 @@ static PetscErrorCode AddTriangles(const Array *array, const PetscInt64 *numbers
 
 static PetscErrorCode ParseTriangles(EqmInput *in, xmlNodePtr node, EqmBuilder *builder)
 {
-  Array array;
+  EqmGiftiArray array;
   PetscInt64 *numbers;
   PetscErrorCode code;
 
-  EqmTry(ParseArray(in, node, &array));
-  EqmTry(CheckRoom(&array));
+  EqmTry(EqmGiftiParseArray(in, node, 3, &array));
+  EqmTry(EqmGiftiCheckRoom(&array));
   EqmTry(PetscMalloc1(3 * array.num_rows + 1, &numbers));
-  code = ReadNumbers(&array, NULL, numbers);
+  code = EqmGiftiReadNumbers(&array, NULL, numbers);
   if (!code) code = AddTriangles(&array, numbers, builder);
   EqmTry(PetscFree(numbers));
   return code;
@@ -231,6 +82,53 @@ static void GetChildText(xmlNodePtr parent, const char *name, char *value, size_
 
   snprintf(value, length, "%s", text ? (const char *)text : "");
   if (text) xmlFree(text);
+}
+
+/* An entry of an array's metadata, cut to `length`; "" if there is none. */
+static void GetMetaData(xmlNodePtr array, const char *key, char *value, size_t length)
+{
+  char name[64];
+
+  value[0] = '\0';
+  for (xmlNodePtr md = EqmXmlChild(EqmXmlChild(array, "MetaData"), "MD"); md; md = EqmXmlNext(md, "MD")) {
+    GetChildText(md, "Name", name, sizeof(name));
+    if (!strcmp(name, key)) GetChildText(md, "Value", value, length);
+  }
+}
+
+/* One array beside points and triangles: a field, if it has a row per vertex; left out if it cannot be read. */
+static PetscErrorCode ParseField(EqmInput *in, xmlNodePtr node, const char *intent, EqmBuilder *builder)
+{
+  EqmGiftiArray array;
+  char name[EQM_FIELD_NAME];
+  PetscReal *values, *numbers;
+  PetscErrorCode code;
+
+  if (EqmGiftiParseArray(in, node, 0, &array) || array.num_rows != (PetscInt64)builder->num_vertices) return 0;
+  if (array.width > 64 || EqmGiftiCheckRoom(&array)) return 0;
+  GetMetaData(node, "Name", name, sizeof(name));
+  if (!name[0]) snprintf(name, sizeof(name), "%s", strncmp(intent, "NIFTI_INTENT_", 13) ? intent : intent + 13);
+  EqmTry(EqmBuilderAddField(builder, name, strlen(name), PETSC_FALSE, array.width, (size_t)array.num_rows, &values));
+  if (!values) return 0;
+  EqmTry(PetscMalloc1(array.width * array.num_rows + 1, &numbers));
+  code = EqmGiftiReadNumbers(&array, numbers, NULL);
+  for (PetscInt64 i = 0; !code && i < array.width * array.num_rows; ++i)
+    values[i] = numbers[EqmGiftiIndex(&array, i / array.width, i % array.width)];
+  EqmTry(PetscFree(numbers));
+  return code ? EqmBuilderDropField(builder) : 0;
+}
+
+/* The arrays of all other intents. */
+static PetscErrorCode ParseFields(EqmInput *in, xmlNodePtr root, EqmBuilder *builder)
+{
+  char intent[64];
+
+  for (xmlNodePtr node = EqmXmlChild(root, "DataArray"); node; node = EqmXmlNext(node, "DataArray")) {
+    EqmXmlAttribute(node, "Intent", intent, sizeof(intent));
+    if (strcmp(intent, "NIFTI_INTENT_POINTSET") && strcmp(intent, "NIFTI_INTENT_TRIANGLE"))
+      EqmTry(ParseField(in, node, intent, builder));
+  }
+  return 0;
 }
 
 /* Anatomical structure and coordinate system of the point set, for the files that the mesh goes into. */
@@ -266,6 +164,7 @@ static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder, char **metada
   if (!code && !EqmXmlIs(root, "GIFTI")) code = EqmReject(in, EQM_ERR_IO, "a GIFTI file has the root element GIFTI");
   if (!code) code = ParseArrays(in, root, "NIFTI_INTENT_POINTSET", ParsePoints, builder);
   if (!code) code = ParseArrays(in, root, "NIFTI_INTENT_TRIANGLE", ParseTriangles, builder);
+  if (!code) code = ParseFields(in, root, builder);
   if (!code) code = KeepMetadata(root, metadata);
   if (document) xmlFreeDoc(document);
   return code;
@@ -302,4 +201,5 @@ EQM_DEFINE_FORMAT(Gifti) = {.name = "GIFTI",
                             .recognise = RecogniseGifti,
                             .parse = ParseGifti,
                             .write = EqmWriteGifti,
-                            .load = LoadGifti};
+                            .load = LoadGifti,
+                            .vertex_fields = PETSC_TRUE};

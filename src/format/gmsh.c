@@ -98,6 +98,12 @@ static PetscErrorCode ParseSections(EqmGmsh *gmsh)
       EqmTry(ParseNodes(gmsh, version, PETSC_TRUE));
     } else if (version && EqmWordIs(word, length, "$Elements")) {
       EqmTry(ParseElements(gmsh, version));
+    } else if (version && EqmWordIs(word, length, "$PhysicalNames")) {
+      EqmTry(EqmGmshParseNames(gmsh));
+    } else if (version == 4 && EqmWordIs(word, length, "$Entities")) {
+      EqmTry(EqmGmshParseEntities(gmsh));
+    } else if (EqmWordIs(word, length, "$NodeData") || EqmWordIs(word, length, "$ElementData")) {
+      EqmBuilderNoteLeft(&gmsh->builder, EqmWordIs(word, length, "$NodeData") ? "$NodeData" : "$ElementData");
     } else if (!version && !EqmWordIs(word, length, "$Comments")) {
       return EqmRejectAt(in, word, EQM_ERR_IO, "a section before $MeshFormat");
     }
@@ -119,8 +125,22 @@ static PetscErrorCode ParseGmsh(const char *bytes, size_t length, EqmSerialMesh 
   EqmBuilderOpen(&gmsh.builder, &in);
   code = ParseSections(&gmsh);
   EqmTry(EqmTagMapReset(&gmsh.tags));
-  return EqmBuilderFinish(&gmsh.builder, code, mesh);
+  EqmTry(PetscFree(gmsh.entities));
+  code = EqmBuilderFinish(&gmsh.builder, code, mesh);
+  if (!code) {
+    mesh->metadata = gmsh.names[mesh->cell_size - 3];
+    gmsh.names[mesh->cell_size - 3] = NULL;
+  }
+  EqmTry(PetscFree(gmsh.names[0]));
+  EqmTry(PetscFree(gmsh.names[1]));
+  return code;
 }
 
-EQM_DEFINE_FORMAT(Gmsh) = {
-    .name = "Gmsh MSH", .suffixes = "msh", .recognise = RecogniseGmsh, .parse = ParseGmsh, .write = EqmWriteGmsh};
+EQM_DEFINE_FORMAT(Gmsh) = {.name = "Gmsh MSH",
+                           .suffixes = "msh",
+                           .recognise = RecogniseGmsh,
+                           .parse = ParseGmsh,
+                           .write = EqmWriteGmsh,
+                           .vertex_fields = PETSC_TRUE,
+                           .cell_fields = PETSC_TRUE,
+                           .groups = PETSC_TRUE};

@@ -6,12 +6,20 @@
 #include "scalar.h"
 #include "tagmap.h"
 
+/* A part of the geometry, and the first physical group that it belongs to. */
+typedef struct {
+  PetscInt64 dimension, tag, group;
+} EqmGmshEntity;
+
 typedef struct {
   EqmInput *in;
   EqmBuilder builder;
   EqmTagMap tags;
   PetscBool ascii, big_endian, version_4_0;
   PetscBool has_nodes;
+  PetscInt64 num_entities, entity_capacity; /* surfaces and volumes of version 4 that are in a physical group */
+  EqmGmshEntity *entities;
+  char *names[2]; /* of physical groups of dimension 2 and 3, as metadata */
 } EqmGmsh;
 
 PETSC_INTERN PetscErrorCode EqmGmshReadInteger(EqmGmsh *gmsh, EqmScalarType type, const char *what, PetscInt64 *value);
@@ -26,5 +34,9 @@ PETSC_INTERN PetscErrorCode EqmGmshParseNodes2(EqmGmsh *gmsh, PetscBool parametr
 PETSC_INTERN PetscErrorCode EqmGmshParseElements2(EqmGmsh *gmsh);
 PETSC_INTERN PetscErrorCode EqmGmshParseNodes4(EqmGmsh *gmsh);
 PETSC_INTERN PetscErrorCode EqmGmshParseElements4(EqmGmsh *gmsh);
+
+PETSC_INTERN PetscErrorCode EqmGmshParseNames(EqmGmsh *gmsh);
+PETSC_INTERN PetscErrorCode EqmGmshParseEntities(EqmGmsh *gmsh);
+PETSC_INTERN PetscInt64 EqmGmshGroupOf(const EqmGmsh *gmsh, PetscInt64 dimension, PetscInt64 tag);
 
 #endif

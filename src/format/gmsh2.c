@@ -41,7 +41,7 @@ PetscErrorCode EqmGmshParseNodes2(EqmGmsh *gmsh, PetscBool parametric)
 /* One line: number, type, number of tags, tags, nodes. */
 static PetscErrorCode ParseAsciiElement(EqmGmsh *gmsh)
 {
-  PetscInt64 number, type, num_tags;
+  PetscInt64 number, type, num_tags, group = 0;
   PetscInt num_nodes;
 
   EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the number of an element", &number));
@@ -50,7 +50,9 @@ static PetscErrorCode ParseAsciiElement(EqmGmsh *gmsh)
   EqmTry(EqmGmshReadCount(gmsh, EQM_SCALAR_INT32, "the number of tags of an element", 2, &num_tags));
   for (PetscInt64 k = 0; k < num_tags; ++k) {
     EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "a tag of an element", &number));
+    if (k == 0) group = number; /* the physical one comes first */
   }
+  EqmBuilderSetGroup(&gmsh->builder, group);
   return EqmGmshReadElement(gmsh, type, num_nodes, EQM_SCALAR_INT32);
 }
 
@@ -59,7 +61,7 @@ static PetscErrorCode ParseBinaryElements(EqmGmsh *gmsh, PetscInt64 *done)
 {
   PetscInt64 type, count, num_tags;
   PetscInt num_nodes;
-  const char *skipped;
+  const char *tags;
 
   EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the type of elements", &type));
   EqmTry(EqmGmshNodesOfType(gmsh, type, &num_nodes));
@@ -67,7 +69,8 @@ static PetscErrorCode ParseBinaryElements(EqmGmsh *gmsh, PetscInt64 *done)
   EqmTry(EqmGmshReadCount(gmsh, EQM_SCALAR_INT32, "the number of tags", 4, &num_tags));
   if (!count) return EqmReject(gmsh->in, EQM_ERR_IO, "a block without elements: the file is damaged");
   for (PetscInt64 i = 0; i < count; ++i) {
-    EqmTry(EqmTakeBytes(gmsh->in, 4 * (1 + (size_t)num_tags), "tags of an element", &skipped));
+    EqmTry(EqmTakeBytes(gmsh->in, 4 * (1 + (size_t)num_tags), "tags of an element", &tags));
+    EqmBuilderSetGroup(&gmsh->builder, num_tags ? EqmLoadInteger(tags + 4, EQM_SCALAR_INT32, gmsh->big_endian) : 0);
     EqmTry(EqmGmshReadElement(gmsh, type, num_nodes, EQM_SCALAR_INT32));
   }
   *done += count;

@@ -16,13 +16,18 @@ static PetscErrorCode ParseSectionHeader(EqmGmsh *gmsh, const char *what, size_t
 }
 
 /* Dimension and tag of the entity (in 4.0: tag and dimension), a third number, and how many follow. */
-static PetscErrorCode ParseBlockHeader(EqmGmsh *gmsh, PetscInt64 *dimension, PetscInt64 *third, PetscInt64 *count)
+static PetscErrorCode ParseBlockHeader(EqmGmsh *gmsh, PetscInt64 *dimension, PetscInt64 *entity, PetscInt64 *third,
+                                       PetscInt64 *count)
 {
-  PetscInt64 unused;
+  PetscInt64 first;
 
   EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the dimension of an entity", dimension));
-  EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the tag of an entity", &unused));
-  if (gmsh->version_4_0) *dimension = unused; /* the tag comes first */
+  EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the tag of an entity", entity));
+  if (gmsh->version_4_0) { /* the tag comes first */
+    first = *dimension;
+    *dimension = *entity;
+    *entity = first;
+  }
   EqmTry(EqmGmshReadInteger(gmsh, EQM_SCALAR_INT32, "the third number of a block", third));
   return EqmGmshReadCount(gmsh, EQM_SCALAR_UINT64, "the length of a block", 2, count);
 }
@@ -41,10 +46,10 @@ static PetscErrorCode SkipParameters(EqmGmsh *gmsh, PetscInt64 dimension)
 
 static PetscErrorCode ParseNodeBlock(EqmGmsh *gmsh, PetscInt64 *missing)
 {
-  PetscInt64 dimension, parametric, count;
+  PetscInt64 dimension, unused, parametric, count;
   PetscReal *x;
 
-  EqmTry(ParseBlockHeader(gmsh, &dimension, &parametric, &count));
+  EqmTry(ParseBlockHeader(gmsh, &dimension, &unused, &parametric, &count));
   if (count > *missing) return EqmReject(gmsh->in, EQM_ERR_IO, "the blocks have more nodes than the section");
   *missing -= count;
   for (PetscInt64 i = 0; i < count && !gmsh->version_4_0; ++i) EqmTry(EqmGmshReadTag(gmsh, EQM_SCALAR_UINT64));
@@ -74,10 +79,11 @@ PetscErrorCode EqmGmshParseNodes4(EqmGmsh *gmsh)
 static PetscErrorCode ParseElementBlock(EqmGmsh *gmsh)
 {
   const EqmScalarType index = gmsh->version_4_0 ? EQM_SCALAR_INT32 : EQM_SCALAR_UINT64;
-  PetscInt64 dimension, type, count, tag;
+  PetscInt64 dimension, entity, type, count, tag;
   PetscInt num_nodes;
 
-  EqmTry(ParseBlockHeader(gmsh, &dimension, &type, &count));
+  EqmTry(ParseBlockHeader(gmsh, &dimension, &entity, &type, &count));
+  EqmBuilderSetGroup(&gmsh->builder, EqmGmshGroupOf(gmsh, dimension, entity));
   EqmTry(EqmGmshNodesOfType(gmsh, type, &num_nodes));
   for (PetscInt64 i = 0; i < count; ++i) {
     EqmTry(EqmGmshReadInteger(gmsh, index, "the tag of an element", &tag));

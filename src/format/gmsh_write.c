@@ -1,5 +1,9 @@
 /* MSH as text, version 2.2, which every program reads; fields as node and element data. */
 #include "writers.h"
+#include "metadata.h"
+
+#include <stdio.h>
+#include <string.h>
 
 /* A field as $NodeData or $ElementData. Gmsh has fields of 1, 3 and 9 numbers per node or element; missing ones are
  * zero. */
@@ -19,13 +23,38 @@ static void PrintField(EqmAtomicFile *file, const EqmField *field, PetscInt coun
   EqmAtomicPrint(file, "$End%s\n", section);
 }
 
+/* The names that the groups had in the input, of those that are in use. */
+static void PrintNames(EqmAtomicFile *file, const EqmSerialMesh *mesh)
+{
+  PetscInt count = 0;
+
+  for (int pass = 0; pass < 2; ++pass) {
+    long long group;
+    int at;
+
+    for (const char *line = mesh->metadata; line && *line; line += strcspn(line, "\n") + 1) {
+      if (sscanf(line, EQM_GROUP_KEY "\t%n", &group, &at) != 1) continue;
+      if (pass)
+        EqmAtomicPrint(file, "%d %lld \"%.*s\"\n", (int)mesh->cell_size - 1, group, (int)strcspn(line + at, "\"\n"),
+                       line + at);
+      else
+        ++count;
+    }
+    if (!count) return;
+    EqmAtomicPrint(file, pass ? "$EndPhysicalNames\n" : "$PhysicalNames\n%d\n", (int)count);
+  }
+}
+
 /* EqmWriteGmsh - write an ASCII file of version 2.2, which every program reads. See EqmWriter. */
 PetscErrorCode EqmWriteGmsh(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
                             char *error, size_t error_length)
 {
+  const EqmField *const groups = EqmFieldGroup(fields, num_fields);
   const PetscInt size = mesh->cell_size;
 
-  EqmAtomicPrint(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%lld\n", (long long)mesh->num_vertices);
+  EqmAtomicPrint(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
+  if (groups) PrintNames(file, mesh);
+  EqmAtomicPrint(file, "$Nodes\n%lld\n", (long long)mesh->num_vertices);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
     EqmAtomicPrint(file, "%lld ", (long long)i + 1);
     EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
@@ -33,13 +62,16 @@ PetscErrorCode EqmWriteGmsh(EqmAtomicFile *file, const EqmSerialMesh *mesh, cons
   }
   EqmAtomicPrint(file, "$EndNodes\n$Elements\n%lld\n", (long long)mesh->num_cells);
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    EqmAtomicPrint(file, "%lld %d 2 0 1", (long long)i + 1, size == 3 ? 2 : 4);
+    const int group = EqmGroupOfCell(groups, i);
+
+    EqmAtomicPrint(file, "%lld %d 2 %d %d", (long long)i + 1, size == 3 ? 2 : 4, group, group ? group : 1);
     for (PetscInt k = 0; k < size; ++k)
       EqmAtomicPrint(file, " %lld", (long long)mesh->cells[(size_t)size * (size_t)i + (size_t)k] + 1);
     EqmAtomicWrite(file, "\n", 1);
   }
   EqmAtomicPrint(file, "$EndElements\n");
   for (PetscInt f = 0; f < num_fields; ++f) {
+    if (&fields[f] == groups) continue;
     PrintField(file, &fields[f], fields[f].on_cells ? mesh->num_cells : mesh->num_vertices);
   }
   return 0;

@@ -135,6 +135,8 @@ PetscErrorCode EqmSoupReadHdf5(MPI_Comm comm, const char *file, EqmSoup *soup)
   PetscFunctionBegin;
   PetscCall(EqmH5Open(comm, file, &h5));
   code = ReadMesh(h5, file, soup);
+  if (!code) code = EqmSoupReadFieldsHdf5(h5, *soup);
+  if (code) PetscCall(EqmSoupDestroy(soup));
   PetscCall(EqmH5Close(&h5));
   PetscCall(code);
   PetscFunctionReturn(0);
@@ -164,10 +166,12 @@ static PetscErrorCode WriteMesh(EqmH5 h5, EqmSoup soup)
   PetscCall(EqmH5DeclareReals(h5, vertices_path, soup->num_vertices, 3));
   PetscCall(EqmH5DeclareIntegers(h5, cells_path, soup->num_cells, soup->cell_size));
   if (soup->density) PetscCall(EqmH5DeclareReals(h5, density_path, soup->num_cells, 0));
+  PetscCall(EqmSoupDeclareFieldsHdf5(h5, soup, PETSC_FALSE));
   PetscCall(EqmH5PutInteger(h5, "mesh_checksum", soup->checksum));
   PetscCall(EqmH5Reserve(h5));
   PetscCall(EqmH5WriteReals(h5, vertices_path, vertices, soup->vertices));
   PetscCall(WriteCells(h5, soup, cells));
+  PetscCall(EqmSoupWriteFieldsHdf5(h5, soup, PETSC_FALSE));
   if (soup->density) PetscCall(EqmH5WriteReals(h5, density_path, per_cell, soup->density));
   PetscFunctionReturn(0);
 }

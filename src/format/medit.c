@@ -45,9 +45,10 @@ PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind,
   return EqmReject(builder->in, EQM_ERR_IO, "the section %s comes before the section Vertices", kind->keyword);
 }
 
-/* EqmMeditAddCell - append a cell of a wanted kind by the file's vertex numbers, which count from 1. Not collective.
-   Errors: EQM_ERR_IO (quiet). */
-PetscErrorCode EqmMeditAddCell(EqmBuilder *builder, const EqmMeditKind *kind, const PetscInt64 *vertices)
+/* EqmMeditAddCell - append a cell of a wanted kind by the file's vertex numbers, which count from 1, and its reference
+   number. Not collective. Errors: EQM_ERR_IO (quiet). */
+PetscErrorCode EqmMeditAddCell(EqmBuilder *builder, const EqmMeditKind *kind, const PetscInt64 *vertices,
+                               PetscInt64 reference)
 {
   PetscInt64 corners[EQM_MEDIT_MAX_CORNERS];
   PetscInt *cell;
@@ -59,6 +60,7 @@ PetscErrorCode EqmMeditAddCell(EqmBuilder *builder, const EqmMeditKind *kind, co
     }
     corners[k] = vertices[k] - 1;
   }
+  EqmBuilderSetGroup(builder, reference);
   if (kind->dimension == 2)
     return EqmBuilderAddFace(builder, NULL, (PetscInt64)builder->num_vertices, kind->num_corners, corners);
   EqmTry(EqmBuilderAddCells(builder, kind->num_corners, 1, &cell));
@@ -116,7 +118,7 @@ static PetscErrorCode ParseCells(Medit *medit, const EqmMeditKind *kind)
   for (PetscInt64 i = 0; kind->wanted && i < count; ++i) {
     for (PetscInt k = 0; k < kind->num_corners; ++k) EqmTry(ReadInteger(medit, kind->keyword, &corners[k]));
     EqmTry(ReadInteger(medit, kind->keyword, &reference));
-    EqmTry(EqmMeditAddCell(&medit->builder, kind, corners));
+    EqmTry(EqmMeditAddCell(&medit->builder, kind, corners, reference));
   }
   return 0;
 }
@@ -172,10 +174,11 @@ static PetscErrorCode ParseMedit(const char *bytes, size_t length, EqmSerialMesh
   return EqmBuilderFinish(&medit.builder, ParseSections(&medit), mesh);
 }
 
-/* Write a .mesh file with reference number 0 everywhere. See EqmWriter. */
+/* Write a .mesh file; reference numbers are those of the groups, 0 elsewhere. See EqmWriter. */
 static PetscErrorCode WriteMedit(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                  PetscInt num_fields, char *error, size_t error_length)
 {
+  const EqmField *const group = EqmFieldGroup(fields, num_fields);
   const PetscInt size = mesh->cell_size;
 
   EqmAtomicPrint(file, "MeshVersionFormatted 2\nDimension 3\n\nVertices\n%lld\n", (long long)mesh->num_vertices);
@@ -188,11 +191,15 @@ static PetscErrorCode WriteMedit(EqmAtomicFile *file, const EqmSerialMesh *mesh,
     const PetscInt *const cell = mesh->cells + (size_t)size * (size_t)i;
 
     for (PetscInt k = 0; k < size; ++k) EqmAtomicPrint(file, "%lld ", (long long)cell[k] + 1);
-    EqmAtomicWrite(file, "0\n", 2);
+    EqmAtomicPrint(file, "%d\n", EqmGroupOfCell(group, i));
   }
   EqmAtomicPrint(file, "\nEnd\n");
   return 0;
 }
 
-EQM_DEFINE_FORMAT(Medit) = {
-    .name = "Medit mesh", .suffixes = "mesh", .recognise = RecogniseMedit, .parse = ParseMedit, .write = WriteMedit};
+EQM_DEFINE_FORMAT(Medit) = {.name = "Medit mesh",
+                            .suffixes = "mesh",
+                            .recognise = RecogniseMedit,
+                            .parse = ParseMedit,
+                            .write = WriteMedit,
+                            .groups = PETSC_TRUE};

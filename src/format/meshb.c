@@ -91,7 +91,9 @@ static PetscErrorCode ParseCells(Meshb *meshb, const EqmMeditKind *kind)
 
       corners[k] = EqmLoadInteger(corner, meshb->integer, meshb->big_endian);
     }
-    EqmTry(EqmMeditAddCell(&meshb->builder, kind, corners));
+    EqmTry(EqmMeditAddCell(&meshb->builder, kind, corners,
+                           EqmLoadInteger(records + (size_t)(i + 1) * record_bytes - bytes, meshb->integer,
+                                          meshb->big_endian)));
   }
   return 0;
 }
@@ -166,11 +168,12 @@ static void StartBlock(EqmAtomicFile *file, int32_t code, PetscInt count, size_t
   EqmAtomicWrite(file, &number, 4);
 }
 
-/* Write a .meshb file of version 3 (doubles, 64-bit offsets) with reference number 0 everywhere. See
-   EqmWriter. */
+/* Write a .meshb file of version 3 (doubles, 64-bit offsets); reference numbers are those of the groups, 0 elsewhere.
+   See EqmWriter. */
 static PetscErrorCode WriteMeshb(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                  PetscInt num_fields, char *error, size_t error_length)
 {
+  const EqmField *const group = EqmFieldGroup(fields, num_fields);
   const PetscInt size = mesh->cell_size;
   const int32_t head[3] = {1, 3, CODE_DIMENSION}, dimension = 3, zero = 0, end = CODE_END;
   const int64_t nowhere = 0;
@@ -190,6 +193,7 @@ static PetscErrorCode WriteMeshb(EqmAtomicFile *file, const EqmSerialMesh *mesh,
     int32_t record[5] = {0, 0, 0, 0, 0};
 
     for (PetscInt k = 0; k < size; ++k) record[k] = (int32_t)mesh->cells[(size_t)size * (size_t)i + (size_t)k] + 1;
+    record[size] = EqmGroupOfCell(group, i);
     EqmAtomicWrite(file, record, 4 * ((size_t)size + 1));
   }
   EqmAtomicWrite(file, &end, 4);
@@ -197,5 +201,9 @@ static PetscErrorCode WriteMeshb(EqmAtomicFile *file, const EqmSerialMesh *mesh,
   return 0;
 }
 
-EQM_DEFINE_FORMAT(Meshb) = {
-    .name = "Medit meshb", .suffixes = "meshb", .recognise = RecogniseMeshb, .parse = ParseMeshb, .write = WriteMeshb};
+EQM_DEFINE_FORMAT(Meshb) = {.name = "Medit meshb",
+                            .suffixes = "meshb",
+                            .recognise = RecogniseMeshb,
+                            .parse = ParseMeshb,
+                            .write = WriteMeshb,
+                            .groups = PETSC_TRUE};

@@ -1,9 +1,13 @@
-/* Wavefront OBJ: `v x y z`, `vt u v` and `f a/b/c ...` lines; everything else (normals, groups, materials) is skipped.
+/* Wavefront OBJ: `v x y z`, `vt u v` and `f a/b/c ...` lines; `g` and `o` make groups; everything else (normals,
+ * materials) is skipped.
  */
 #include "builder.h"
+#include "mesh/fields.h"
 #include "format.h"
+#include "metadata.h"
 #include "seam.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* The keywords of OBJ: a file with other first words is no OBJ file. */
@@ -34,6 +38,14 @@ static PetscBool RecogniseObj(const char *bytes, size_t length)
   word_length = EqmReadWord(&in, &word);
   return word_length && !EqmAtLineEnd(&in) && IsKeyword(word, word_length) ? PETSC_TRUE : PETSC_FALSE;
 }
+
+enum { MOST_GROUPS = 1000, LONGEST_GROUP = 128 }; /* of names that are kept */
+
+/* The groups of the file by name; faces of group 0 are in none. */
+typedef struct {
+  PetscInt64 num, first; /* number of the first name */
+  char name[MOST_GROUPS][LONGEST_GROUP];
+} Groups;
 
 /* The largest index of the file; faces may come before the vertices that they name. */
 typedef struct {
@@ -111,7 +123,55 @@ static PetscErrorCode ParseFace(EqmInput *in, EqmBuilder *builder, Largest *larg
   return EqmBuilderEndFace(builder, position, PETSC_MAX_INT);
 }
 
-static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest *largest, PetscBool *foreign)
+/* The number of a name: what we wrote for unnamed groups has its number in it, others count from `first`. */
+static PetscInt64 GroupOfName(const char *name, Groups *groups)
+{
+  long long number;
+  int length = 0;
+
+  if (!strcmp(name, "default")) return 0;
+  if (!groups->num && sscanf(name, "group_%lld%n", &number, &length) == 1 && !name[length]) {
+    groups->first = MOST_GROUPS + PetscMax(groups->first, PetscMin(number, PETSC_MAX_INT / 2));
+    return number;
+  }
+  for (PetscInt64 k = 0; k < groups->num; ++k) {
+    if (!strcmp(name, groups->name[k])) return groups->first + k;
+  }
+  if (groups->num == MOST_GROUPS) return 0;
+  strcpy(groups->name[groups->num], name);
+  return groups->first + groups->num++;
+}
+
+/* `g name` or `o name`: the faces that follow belong to the group of that name. */
+static PetscErrorCode ParseGroup(EqmInput *in, EqmBuilder *builder, Groups *groups)
+{
+  char text[LONGEST_GROUP];
+  const char *name;
+  size_t length;
+
+  EqmSkipBlanks(in);
+  name = in->cursor;
+  while (in->cursor < in->end && *in->cursor != '\n' && *in->cursor != '\r') ++in->cursor;
+  for (length = (size_t)(in->cursor - name); length && EqmIsBlank(name[length - 1]);) --length;
+  snprintf(text, sizeof(text), "%.*s", (int)PetscMin(length, sizeof(text) - 1), name);
+  EqmBuilderSetGroup(builder, text[0] ? GroupOfName(text, groups) : 0);
+  return 0;
+}
+
+/* The names go on as metadata. */
+static PetscErrorCode KeepNames(const Groups *groups, char **metadata)
+{
+  char key[40];
+
+  for (PetscInt64 k = 0; k < groups->num; ++k) {
+    snprintf(key, sizeof(key), EQM_GROUP_KEY, (long long)(groups->first + k));
+    EqmTry(EqmMetadataAdd(metadata, key, groups->name[k]));
+  }
+  return 0;
+}
+
+static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest *largest, Groups *groups,
+                                     PetscBool *foreign)
 {
   const char *word;
   size_t length = EqmReadWord(in, &word);
@@ -122,6 +182,10 @@ static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest 
     EqmTry(ParseTexturePoint(in, builder));
   } else if (length == 1 && *word == 'f') {
     EqmTry(ParseFace(in, builder, largest));
+  } else if (length == 1 && (*word == 'g' || *word == 'o')) {
+    EqmTry(ParseGroup(in, builder, groups));
+  } else if (EqmWordIs(word, length, "vn") || EqmWordIs(word, length, "usemtl")) {
+    EqmBuilderNoteLeft(builder, length == 2 ? "normals" : "materials");
   } else if (length && !IsKeyword(word, length)) {
     *foreign = PETSC_TRUE;
     for (size_t i = 0; i < length; ++i) {
@@ -132,14 +196,14 @@ static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest 
   return 0;
 }
 
-static PetscErrorCode ParseStatements(EqmInput *in, EqmBuilder *builder)
+static PetscErrorCode ParseStatements(EqmInput *in, EqmBuilder *builder, Groups *groups)
 {
   Largest largest = {-1, in->start};
   PetscBool foreign = PETSC_FALSE;
 
   EqmSkipMark(in);
   while (in->cursor < in->end) {
-    EqmTry(ParseStatement(in, builder, &largest, &foreign));
+    EqmTry(ParseStatement(in, builder, &largest, groups, &foreign));
     EqmSkipLine(in);
   }
   if (foreign && !builder->num_vertices) {
@@ -158,14 +222,34 @@ static PetscErrorCode ParseObj(const char *bytes, size_t length, EqmSerialMesh *
 {
   EqmInput in;
   EqmBuilder builder;
+  Groups *groups;
+  PetscErrorCode code;
 
   EqmInputOpen(&in, bytes, length, error, error_length);
+  EqmTry(PetscCalloc1(1, &groups));
+  groups->first = 1;
   EqmBuilderOpen(&builder, &in);
-  return EqmBuilderFinish(&builder, ParseStatements(&in, &builder), mesh);
+  EqmBuilderSetGroup(&builder, 0);
+  code = EqmBuilderFinish(&builder, ParseStatements(&in, &builder, groups), mesh);
+  if (!code) EqmTry(KeepNames(groups, &mesh->metadata));
+  EqmTry(PetscFree(groups));
+  return code;
+}
+
+/* A line `g name` where the group changes. */
+static void PrintGroup(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *group, PetscInt cell)
+{
+  char key[32], name[256];
+
+  if (!group || (cell > 0 && group->values[cell] == group->values[cell - 1])) return;
+  snprintf(key, sizeof(key), EQM_GROUP_KEY, (long long)group->values[cell]);
+  if (!EqmMetadataGet(mesh->metadata, key, name, sizeof(name)))
+    snprintf(name, sizeof(name), group->values[cell] == 0.0 ? "default" : "group_%lld", (long long)group->values[cell]);
+  EqmAtomicPrint(file, "g %s\n", name);
 }
 
 /* Texture points, one for each different pair of a vertex and a point, and faces that name both. */
-static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, const EqmSerialMesh *mesh)
+static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *group)
 {
   EqmSeams seams;
 
@@ -176,6 +260,7 @@ static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, const EqmSerialMes
     EqmAtomicWrite(file, "\n", 1);
   }
   for (size_t i = 0; i < 3 * (size_t)mesh->num_cells; ++i) {
+    if (i % 3 == 0) PrintGroup(file, mesh, group, (PetscInt)(i / 3));
     EqmAtomicPrint(file, "%s%lld/%lld%s", i % 3 ? " " : "f ", (long long)mesh->cells[i] + 1,
                    (long long)seams.corner[i] + 1, i % 3 == 2 ? "\n" : "");
   }
@@ -186,16 +271,19 @@ static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, const EqmSerialMes
 static PetscErrorCode WriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                PetscInt num_fields, char *error, size_t error_length)
 {
+  const EqmField *const group = EqmFieldGroup(fields, num_fields);
+
   EqmTry(EqmRequireTriangles(mesh, "OBJ", error, error_length));
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
     EqmAtomicWrite(file, "v ", 2);
     EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
     EqmAtomicWrite(file, "\n", 1);
   }
-  if (mesh->texture) return WriteTexturedFaces(file, mesh);
+  if (mesh->texture) return WriteTexturedFaces(file, mesh, group);
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
     const PetscInt *cell = mesh->cells + 3 * (size_t)i;
 
+    PrintGroup(file, mesh, group, i);
     EqmAtomicPrint(file, "f %lld %lld %lld\n", (long long)cell[0] + 1, (long long)cell[1] + 1, (long long)cell[2] + 1);
   }
   return 0;
@@ -206,4 +294,5 @@ EQM_DEFINE_FORMAT(Obj) = {.name = "OBJ",
                           .recognise = RecogniseObj,
                           .parse = ParseObj,
                           .write = WriteObj,
-                          .writes_texture = PETSC_TRUE};
+                          .writes_texture = PETSC_TRUE,
+                          .groups = PETSC_TRUE};

@@ -117,8 +117,24 @@ static PetscErrorCode AddFace(const EqmPlyHeader *header, const EqmPlyElement *e
   return EqmBuilderEndFace(builder, position, header->num_vertices);
 }
 
-/* One vertex, whose coordinates go to x and (where there are some) uv, or one face, or a row to be skipped. */
-static PetscErrorCode ReadRow(EqmInput *in, const EqmPlyHeader *header, const EqmPlyElement *element,
+/* Where the numbers of a vertex or face go that have no role. */
+static PetscErrorCode KeepProperties(const EqmPlyHeader *header, EqmPlyElement *element, EqmBuilder *builder)
+{
+  if (!element->is_vertex && !element->is_face) return 0;
+  for (PetscInt p = 0; p < element->num_properties; ++p) {
+    EqmPlyProperty *const property = &element->property[p];
+    const PetscBool lone =
+        property->role == EQM_PLY_ROLE_S || property->role == EQM_PLY_ROLE_T ? PETSC_TRUE : PETSC_FALSE;
+
+    if (property->count_type || (property->role != EQM_PLY_ROLE_NONE && !(lone && !header->textured))) continue;
+    EqmTry(EqmBuilderAddField(builder, property->name, property->name_length, element->is_face, 1,
+                              (size_t)element->count, &property->values));
+  }
+  return 0;
+}
+
+/* Row i: one vertex, whose coordinates go to x and (where there are some) uv, or one face, or a row to be skipped. */
+static PetscErrorCode ReadRow(EqmInput *in, const EqmPlyHeader *header, const EqmPlyElement *element, PetscInt64 i,
                               EqmBuilder *builder, PetscReal *x, PetscReal *uv, Lists *lists)
 {
   const char *position = in->cursor;
@@ -134,6 +150,7 @@ static PetscErrorCode ReadRow(EqmInput *in, const EqmPlyHeader *header, const Eq
       continue;
     }
     EqmTry(ReadNumber(in, header, property->type, &value));
+    if (property->values) property->values[i] = value;
     if (property->role >= EQM_PLY_ROLE_X && property->role <= EQM_PLY_ROLE_Z)
       x[property->role - EQM_PLY_ROLE_X] = value;
     if (property->role >= EQM_PLY_ROLE_S && property->role <= EQM_PLY_ROLE_T && uv)
@@ -142,8 +159,7 @@ static PetscErrorCode ReadRow(EqmInput *in, const EqmPlyHeader *header, const Eq
   return element->is_face || element->is_strips ? AddFace(header, element, position, lists, builder) : 0;
 }
 
-static PetscErrorCode ParseRows(EqmInput *in, const EqmPlyHeader *header, const EqmPlyElement *element,
-                                EqmBuilder *builder)
+static PetscErrorCode ParseRows(EqmInput *in, const EqmPlyHeader *header, EqmPlyElement *element, EqmBuilder *builder)
 {
   const size_t smallest = SmallestRow(header, element);
   PetscReal *vertices = NULL, *uv = NULL;
@@ -159,8 +175,11 @@ static PetscErrorCode ParseRows(EqmInput *in, const EqmPlyHeader *header, const 
   }
   if (element->is_vertex) EqmTry(EqmBuilderAddVertices(builder, (size_t)element->count, &vertices));
   if (element->is_vertex && header->textured) EqmTry(EqmBuilderAddTexturePoints(builder, (size_t)element->count, &uv));
-  for (PetscInt64 i = 0; i < element->count && !code; ++i)
-    code = ReadRow(in, header, element, builder, vertices ? vertices + 3 * i : NULL, uv ? uv + 2 * i : NULL, &lists);
+  EqmTry(KeepProperties(header, element, builder));
+  for (PetscInt64 i = 0; i < element->count && !code; ++i) {
+    EqmBuilderSetRow(builder, element->is_face ? i : element->count);
+    code = ReadRow(in, header, element, i, builder, vertices ? vertices + 3 * i : NULL, uv ? uv + 2 * i : NULL, &lists);
+  }
   EqmTry(PetscFree(lists.corners));
   EqmTry(PetscFree(lists.reals));
   return code;
@@ -197,4 +216,6 @@ EQM_DEFINE_FORMAT(Ply) = {.name = "PLY",
                           .recognise = RecognisePly,
                           .parse = ParsePly,
                           .write = EqmWritePly,
-                          .writes_texture = PETSC_TRUE};
+                          .writes_texture = PETSC_TRUE,
+                          .vertex_fields = PETSC_TRUE,
+                          .cell_fields = PETSC_TRUE};

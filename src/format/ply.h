@@ -21,6 +21,9 @@ typedef struct {
   EqmScalarType count_type; /* EQM_SCALAR_NONE: one number, not a list */
   EqmScalarType type;
   EqmPlyRole role;
+  const char *name; /* in the header */
+  size_t name_length;
+  PetscReal *values; /* where a property without a role goes, or NULL */
 } EqmPlyProperty;
 
 #define EQM_PLY_MAX_PROPERTIES 128 /* of one element; the files of scanners have about twenty */

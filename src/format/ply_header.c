@@ -65,6 +65,8 @@ static PetscErrorCode ParseProperty(EqmInput *in, EqmPlyHeader *header)
   EqmTry(ParseType(in, &property->type));
   length = EqmReadWord(in, &name);
   property->role = RoleOf(element, is_list, name, length);
+  property->name = name;
+  property->name_length = length;
   if (property->role == EQM_PLY_ROLE_CORNERS && !EqmScalarIsInteger(property->type)) {
     return EqmRejectAt(in, name, EQM_ERR_IO, "vertex indices must be whole numbers");
   }

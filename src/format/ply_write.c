@@ -5,11 +5,29 @@
 #include "scalar.h"
 #include "seam.h"
 
+#include <string.h>
+
+/* Colours are bytes, or the programs that show them do not take them for colours. */
+static PetscBool IsColour(const EqmField *field)
+{
+  static const char *const names[] = {"red", "green", "blue", "alpha", "diffuse_red", "diffuse_green", "diffuse_blue"};
+
+  for (size_t k = 0; k < sizeof(names) / sizeof(names[0]); ++k) {
+    if (field->width == 1 && !strcmp(field->name, names[k])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+static unsigned char ToByte(PetscReal value)
+{
+  return value >= 255.0 ? 255 : value > 0.0 ? (unsigned char)(value + 0.5) : 0;
+}
+
 /* Names may not have blanks in PLY. */
 static void PrintFieldHeader(EqmAtomicFile *file, const EqmField *field)
 {
   for (PetscInt k = 0; k < field->width; ++k) {
-    EqmAtomicPrint(file, "property double ");
+    EqmAtomicPrint(file, IsColour(field) ? "property uchar " : "property double ");
     for (const char *c = field->name; *c; ++c) EqmAtomicWrite(file, EqmIsSpace(*c) ? "_" : c, 1);
     if (field->width > 1) EqmAtomicPrint(file, "_%d", (int)k);
     EqmAtomicPrint(file, "\n");
@@ -21,8 +39,12 @@ static void WriteFields(EqmAtomicFile *file, const EqmField *fields, PetscInt nu
 {
   for (PetscInt f = 0; f < num_fields; ++f) {
     const size_t width = (size_t)fields[f].width;
+    const unsigned char byte = IsColour(&fields[f]) ? ToByte(fields[f].values[row]) : 0;
 
-    if (fields[f].on_cells == on_cells)
+    if (fields[f].on_cells != on_cells) continue;
+    if (IsColour(&fields[f]))
+      EqmAtomicWrite(file, &byte, 1);
+    else
       EqmAtomicWrite(file, fields[f].values + width * (size_t)row, width * sizeof(double));
   }
 }

@@ -1,16 +1,8 @@
 /* Legacy VTK: POLYDATA and UNSTRUCTURED_GRID, ASCII and binary, versions 1 to 5.1. */
 #include "writers.h"
-#include "scalar.h"
-#include "vtkcells.h"
+#include "vtk.h"
 
 #include <string.h>
-
-typedef struct {
-  EqmInput *in;
-  EqmBuilder builder;
-  PetscBool ascii, polydata;
-  EqmVtkCells cells; /* of an unstructured grid: its types come later */
-} Vtk;
 
 /* The first line. Not collective. */
 static PetscBool RecogniseVtk(const char *bytes, size_t length)
@@ -20,71 +12,12 @@ static PetscBool RecogniseVtk(const char *bytes, size_t length)
   return length >= sizeof(magic) - 1 && !memcmp(bytes, magic, sizeof(magic) - 1) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscErrorCode ParseType(EqmInput *in, EqmScalarType *type)
-{
-  static const struct {
-    const char *name;
-    EqmScalarType type;
-  } known[] = {{"float", EQM_SCALAR_FLOAT32},
-               {"double", EQM_SCALAR_FLOAT64},
-               {"int", EQM_SCALAR_INT32},
-               {"unsigned_int", EQM_SCALAR_UINT32},
-               {"long", EQM_SCALAR_INT64},
-               {"unsigned_long", EQM_SCALAR_UINT64},
-               {"vtktypeint64", EQM_SCALAR_INT64},
-               {"vtktypeuint64", EQM_SCALAR_UINT64},
-               {"vtktypeint32", EQM_SCALAR_INT32},
-               {"vtktypeuint32", EQM_SCALAR_UINT32},
-               {"vtkIdType", EQM_SCALAR_INT32},
-               {"short", EQM_SCALAR_INT16},
-               {"unsigned_short", EQM_SCALAR_UINT16},
-               {"char", EQM_SCALAR_INT8},
-               {"unsigned_char", EQM_SCALAR_UINT8}};
-
-  for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); ++i) {
-    if (EqmReadKeyword(in, known[i].name)) {
-      *type = known[i].type;
-      return 0;
-    }
-  }
-  return EqmReject(in, EQM_ERR_IO,
-                   "unknown data type; known are float, double, int, long, short, char and unsigned ones");
-}
-
-/* Can the rest of the file hold so many numbers? To be checked before memory is allocated for them. */
-static PetscErrorCode CheckRoom(Vtk *vtk, EqmScalarType type, PetscInt64 count)
-{
-  const size_t bytes_each = vtk->ascii ? 2 : EqmScalarSize(type);
-
-  if (count >= 0 && (size_t)count <= (EqmRemaining(vtk->in) + 1) / bytes_each) return 0;
-  return EqmReject(vtk->in, EQM_ERR_IO,
-                   "%lld numbers are announced, but the file is too short for them: it is truncated", (long long)count);
-}
-
-static PetscErrorCode ReadReals(Vtk *vtk, EqmScalarType type, PetscInt64 count, PetscReal *values)
-{
-  const char *bytes;
-
-  if (vtk->ascii) {
-    for (PetscInt64 i = 0; i < count; ++i) {
-      EqmSkipSpace(vtk->in, 0);
-      if (!EqmReadReal(vtk->in, &values[i])) return EqmReject(vtk->in, EQM_ERR_IO, "a number is missing");
-    }
-    return 0;
-  }
-  EqmTry(EqmTakeBytes(vtk->in, (size_t)count * EqmScalarSize(type), "data", &bytes));
-  for (PetscInt64 i = 0; i < count; ++i) {
-    values[i] = EqmLoadReal(bytes + (size_t)i * EqmScalarSize(type), type, PETSC_TRUE);
-  }
-  return 0;
-}
-
 /* Whole numbers into an array that is allocated here. */
-static PetscErrorCode ReadIntegers(Vtk *vtk, EqmScalarType type, PetscInt64 count, PetscInt64 **values)
+static PetscErrorCode ReadIntegers(EqmVtk *vtk, EqmScalarType type, PetscInt64 count, PetscInt64 **values)
 {
   const char *bytes;
 
-  EqmTry(CheckRoom(vtk, type, count));
+  EqmTry(EqmVtkCheckRoom(vtk, type, count));
   EqmTry(PetscMalloc1(count + 1, values));
   if (vtk->ascii) {
     for (PetscInt64 i = 0; i < count; ++i) {
@@ -100,29 +33,23 @@ static PetscErrorCode ReadIntegers(Vtk *vtk, EqmScalarType type, PetscInt64 coun
   return 0;
 }
 
-static PetscErrorCode ReadTwoCounts(Vtk *vtk, PetscInt64 *first, PetscInt64 *second)
-{
-  if (EqmReadInteger(vtk->in, first) && EqmReadInteger(vtk->in, second) && *first >= 0 && *second >= 0) return 0;
-  return EqmReject(vtk->in, EQM_ERR_IO, "two numbers must follow the name of a section");
-}
-
-static PetscErrorCode ParsePoints(Vtk *vtk)
+static PetscErrorCode ParsePoints(EqmVtk *vtk)
 {
   PetscInt64 count;
   EqmScalarType type;
   PetscReal *x;
 
   EqmTry(EqmReadCount(vtk->in, "points", 3, &count));
-  EqmTry(ParseType(vtk->in, &type));
+  EqmTry(EqmVtkReadType(vtk->in, &type));
   EqmSkipLine(vtk->in);
   if (vtk->builder.num_vertices) return EqmReject(vtk->in, EQM_ERR_IO, "a second section POINTS");
-  EqmTry(CheckRoom(vtk, type, 3 * count));
+  EqmTry(EqmVtkCheckRoom(vtk, type, 3 * count));
   EqmTry(EqmBuilderAddVertices(&vtk->builder, (size_t)count, &x));
-  return ReadReals(vtk, type, 3 * count, x);
+  return EqmVtkReadReals(vtk, type, 3 * count, x);
 }
 
 /* Before version 5: each cell is its number of corners and the corners, in one array. */
-static PetscErrorCode SplitCells(Vtk *vtk, PetscInt64 num_cells, PetscInt64 size, EqmVtkCells *cells)
+static PetscErrorCode SplitCells(EqmVtk *vtk, PetscInt64 num_cells, PetscInt64 size, EqmVtkCells *cells)
 {
   PetscInt64 from = 0, to = 0;
 
@@ -144,17 +71,17 @@ static PetscErrorCode SplitCells(Vtk *vtk, PetscInt64 num_cells, PetscInt64 size
 }
 
 /* From version 5 on: one offset more than there are cells, and the corners. */
-static PetscErrorCode ReadOffsets(Vtk *vtk, PetscInt64 num_offsets, PetscInt64 num_corners, EqmVtkCells *cells)
+static PetscErrorCode ReadOffsets(EqmVtk *vtk, PetscInt64 num_offsets, PetscInt64 num_corners, EqmVtkCells *cells)
 {
   EqmScalarType type;
 
-  EqmTry(ParseType(vtk->in, &type));
+  EqmTry(EqmVtkReadType(vtk->in, &type));
   EqmSkipLine(vtk->in);
   EqmTry(ReadIntegers(vtk, type, num_offsets, &cells->end));
   EqmSkipSpace(vtk->in, 0);
   if (!EqmReadKeyword(vtk->in, "CONNECTIVITY"))
     return EqmReject(vtk->in, EQM_ERR_IO, "CONNECTIVITY must follow OFFSETS");
-  EqmTry(ParseType(vtk->in, &type));
+  EqmTry(EqmVtkReadType(vtk->in, &type));
   EqmSkipLine(vtk->in);
   EqmTry(ReadIntegers(vtk, type, num_corners, &cells->corners));
   cells->num_cells = PetscMax(num_offsets - 1, 0);
@@ -163,12 +90,12 @@ static PetscErrorCode ReadOffsets(Vtk *vtk, PetscInt64 num_offsets, PetscInt64 n
   return 0;
 }
 
-static PetscErrorCode ReadCells(Vtk *vtk, EqmVtkCells *cells)
+static PetscErrorCode ReadCells(EqmVtk *vtk, EqmVtkCells *cells)
 {
   PetscInt64 first, second;
   EqmInput after;
 
-  EqmTry(ReadTwoCounts(vtk, &first, &second));
+  EqmTry(EqmVtkReadTwoCounts(vtk, &first, &second));
   EqmSkipLine(vtk->in);
   after = *vtk->in;
   EqmSkipSpace(&after, 0);
@@ -182,24 +109,27 @@ static PetscErrorCode ReadCells(Vtk *vtk, EqmVtkCells *cells)
 /* Cells of a surface: polygons, triangle strips, or vertices and lines, which are skipped. */
 typedef enum { CELLS_POLYGONS, CELLS_STRIPS, CELLS_SKIPPED } SurfaceCells;
 
-static PetscErrorCode ParseSurfaceCells(Vtk *vtk, SurfaceCells kind)
+static PetscErrorCode ParseSurfaceCells(EqmVtk *vtk, SurfaceCells kind)
 {
-  EqmVtkCells cells = {.strips = kind == CELLS_STRIPS ? PETSC_TRUE : PETSC_FALSE};
+  EqmVtkCells cells = {.strips = kind == CELLS_STRIPS ? PETSC_TRUE : PETSC_FALSE, .first_row = vtk->num_rows};
   PetscErrorCode code = ReadCells(vtk, &cells);
 
+  vtk->num_rows += cells.num_cells;
   if (!code && kind != CELLS_SKIPPED)
     code = EqmBuilderAddVtkCells(&vtk->builder, &cells, 0, (PetscInt64)vtk->builder.num_vertices);
   EqmTry(EqmVtkCellsReset(&cells));
   return code;
 }
 
-static PetscErrorCode ParseGridCells(Vtk *vtk)
+static PetscErrorCode ParseGridCells(EqmVtk *vtk)
 {
   if (vtk->cells.end) return EqmReject(vtk->in, EQM_ERR_IO, "a second section CELLS");
-  return ReadCells(vtk, &vtk->cells);
+  EqmTry(ReadCells(vtk, &vtk->cells));
+  vtk->num_rows = vtk->cells.num_cells;
+  return 0;
 }
 
-static PetscErrorCode ParseCellTypes(Vtk *vtk)
+static PetscErrorCode ParseCellTypes(EqmVtk *vtk)
 {
   PetscInt64 count;
 
@@ -212,40 +142,7 @@ static PetscErrorCode ParseCellTypes(Vtk *vtk)
   return ReadIntegers(vtk, EQM_SCALAR_INT32, count, &vtk->cells.type);
 }
 
-/* Arrays that belong to the file, not to its points or cells. */
-static PetscErrorCode SkipField(Vtk *vtk)
-{
-  const char *word, *bytes;
-  PetscInt64 num_arrays, width, length;
-  EqmScalarType type;
-
-  EqmReadWord(vtk->in, &word);
-  EqmTry(EqmReadCount(vtk->in, "arrays", 8, &num_arrays));
-  for (PetscInt64 a = 0; a < num_arrays; ++a) {
-    EqmSkipSpace(vtk->in, 0);
-    EqmReadWord(vtk->in, &word);
-    EqmTry(ReadTwoCounts(vtk, &width, &length));
-    EqmTry(ParseType(vtk->in, &type));
-    EqmSkipLine(vtk->in);
-    if (width && length > (PetscInt64)EqmRemaining(vtk->in) / width) {
-      return EqmReject(vtk->in, EQM_ERR_IO, "the file ends inside an array: it is truncated");
-    }
-    if (!vtk->ascii) EqmTry(EqmTakeBytes(vtk->in, (size_t)(width * length) * EqmScalarSize(type), "array", &bytes));
-    for (PetscInt64 i = 0; vtk->ascii && i < width * length; ++i) {
-      EqmSkipSpace(vtk->in, 0);
-      if (!EqmReadWord(vtk->in, &word)) return EqmReject(vtk->in, EQM_ERR_IO, "the file ends inside an array");
-    }
-  }
-  return 0;
-}
-
-static void SkipMetadata(EqmInput *in)
-{
-  EqmSkipLine(in);
-  while (in->cursor < in->end && !EqmAtLineEnd(in)) EqmSkipLine(in);
-}
-
-static PetscErrorCode ParseSection(Vtk *vtk, PetscBool *last)
+static PetscErrorCode ParseSection(EqmVtk *vtk, PetscBool *last)
 {
   EqmInput *in = vtk->in;
 
@@ -256,18 +153,19 @@ static PetscErrorCode ParseSection(Vtk *vtk, PetscBool *last)
   if (vtk->polydata && EqmReadKeyword(in, "TRIANGLE_STRIPS")) return ParseSurfaceCells(vtk, CELLS_STRIPS);
   if (!vtk->polydata && EqmReadKeyword(in, "CELLS")) return ParseGridCells(vtk);
   if (!vtk->polydata && EqmReadKeyword(in, "CELL_TYPES")) return ParseCellTypes(vtk);
-  if (EqmReadKeyword(in, "FIELD")) return SkipField(vtk);
+  if (EqmReadKeyword(in, "FIELD")) return EqmVtkSkipField(vtk);
   if (EqmReadKeyword(in, "METADATA")) {
-    SkipMetadata(in);
+    EqmVtkSkipMetadata(in);
     return 0;
   }
-  *last = EqmReadKeyword(in, "POINT_DATA") || EqmReadKeyword(in, "CELL_DATA") ? PETSC_TRUE : PETSC_FALSE;
-  if (*last) return 0;
+  *last = PETSC_TRUE;
+  if (EqmReadKeyword(in, "POINT_DATA")) return EqmVtkParseFields(vtk, PETSC_FALSE);
+  if (EqmReadKeyword(in, "CELL_DATA")) return EqmVtkParseFields(vtk, PETSC_TRUE);
   return EqmReject(in, EQM_ERR_IO,
                    "a section was expected (POINTS, POLYGONS, CELLS, CELL_TYPES, ...): the file is damaged");
 }
 
-static PetscErrorCode ParseHeader(Vtk *vtk)
+static PetscErrorCode ParseHeader(EqmVtk *vtk)
 {
   EqmInput *in = vtk->in;
 
@@ -285,7 +183,7 @@ static PetscErrorCode ParseHeader(Vtk *vtk)
                    "UNSTRUCTURED_GRID are");
 }
 
-static PetscErrorCode ParseMesh(Vtk *vtk)
+static PetscErrorCode ParseMesh(EqmVtk *vtk)
 {
   PetscBool last = PETSC_FALSE;
 
@@ -306,7 +204,7 @@ static PetscErrorCode ParseMesh(Vtk *vtk)
 static PetscErrorCode ParseVtk(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error, size_t error_length)
 {
   EqmInput in;
-  Vtk vtk = {0};
+  EqmVtk vtk = {0};
   PetscErrorCode code;
 
   EqmInputOpen(&in, bytes, length, error, error_length);
@@ -317,5 +215,10 @@ static PetscErrorCode ParseVtk(const char *bytes, size_t length, EqmSerialMesh *
   return EqmBuilderFinish(&vtk.builder, code, mesh);
 }
 
-EQM_DEFINE_FORMAT(Vtk) = {
-    .name = "legacy VTK", .suffixes = "vtk", .recognise = RecogniseVtk, .parse = ParseVtk, .write = EqmWriteVtk};
+EQM_DEFINE_FORMAT(Vtk) = {.name = "legacy VTK",
+                          .suffixes = "vtk",
+                          .recognise = RecogniseVtk,
+                          .parse = ParseVtk,
+                          .write = EqmWriteVtk,
+                          .vertex_fields = PETSC_TRUE,
+                          .cell_fields = PETSC_TRUE};

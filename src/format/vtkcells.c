@@ -87,6 +87,7 @@ PetscErrorCode EqmBuilderAddVtkCells(EqmBuilder *builder, const EqmVtkCells *cel
       return EqmRejectAt(builder->in, NULL, EQM_ERR_IO, "cell %lld: its offset %lld is out of range %lld..%lld",
                          (long long)i, (long long)end, (long long)begin, (long long)cells->num_corners);
     }
+    EqmBuilderSetRow(builder, cells->first_row + i);
     EqmTry(AddCell(builder, i,
                    cells->type     ? cells->type[i]
                    : cells->strips ? VTK_STRIP

@@ -94,21 +94,68 @@ typedef struct {
 } CellKind;
 
 static PetscErrorCode ParseCells(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr piece,
-                                 const CellKind *kind, PetscInt64 first_vertex, PetscInt64 num_points)
+                                 const CellKind *kind, PetscInt64 first_vertex, PetscInt64 num_points, PetscInt64 *row)
 {
-  EqmVtkCells cells = {.strips = kind->strips};
+  EqmVtkCells cells = {.strips = kind->strips, .first_row = *row};
   PetscErrorCode code;
 
   if (!EqmXmlInteger(piece, kind->count, &cells.num_cells) || cells.num_cells < 0) {
     if (kind->strips) return 0;
     return EqmXmlReject(encoding->in, piece, "%s is missing or not a whole number", kind->count);
   }
+  *row += cells.num_cells;
   if (!cells.num_cells) return 0;
   if (!EqmXmlChild(piece, kind->element)) return EqmXmlReject(encoding->in, piece, "it has no %s", kind->element);
   code = ReadCells(encoding, EqmXmlChild(piece, kind->element), kind->has_types, &cells);
   if (!code) code = EqmBuilderAddVtkCells(builder, &cells, first_vertex, num_points);
   EqmTry(EqmVtkCellsReset(&cells));
   return code;
+}
+
+/* The arrays of PointData or CellData; one that cannot be read, of texts say, is left out. */
+static PetscErrorCode ParseFields(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr parent,
+                                  PetscBool on_cells, PetscInt64 num_rows)
+{
+  for (xmlNodePtr array = EqmXmlChild(parent, "DataArray"); array; array = EqmXmlNext(array, "DataArray")) {
+    char name[EQM_FIELD_NAME], type[32];
+    PetscInt64 width = 1;
+    PetscReal *values;
+
+    EqmXmlAttribute(array, "Name", name, sizeof(name));
+    EqmXmlAttribute(array, "type", type, sizeof(type));
+    if (!strcmp(type, "String")) {
+      EqmBuilderNoteLeft(builder, name);
+      continue;
+    }
+    if (EqmXmlInteger(array, "NumberOfComponents", &width) && (width < 1 || width > PETSC_MAX_INT / 4)) continue;
+    if (EqmVtuCheckRoom(encoding, array, width * num_rows)) continue;
+    EqmTry(EqmBuilderAddField(builder, name, strlen(name), on_cells, width, (size_t)num_rows, &values));
+    if (values && EqmVtuReadReals(encoding, array, width * num_rows, values)) {
+      EqmBuilderNoteLeft(builder, name);
+      EqmTry(EqmBuilderDropField(builder));
+    }
+  }
+  return 0;
+}
+
+/* Fields of a file of one piece; of several no more than the first has them. */
+static PetscErrorCode ParsePieceFields(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr piece,
+                                       PetscInt64 num_points, PetscInt64 num_rows)
+{
+  const xmlNodePtr points = EqmXmlChild(piece, "PointData"), cells = EqmXmlChild(piece, "CellData");
+
+  if (points) EqmTry(ParseFields(encoding, builder, points, PETSC_FALSE, num_points));
+  return cells ? ParseFields(encoding, builder, cells, PETSC_TRUE, num_rows) : 0;
+}
+
+/* How many cells of a surface stand before its polygons among the rows of the cell fields. */
+static PetscInt64 RowsBefore(xmlNodePtr piece)
+{
+  PetscInt64 vertices = 0, lines = 0;
+
+  if (!EqmXmlInteger(piece, "NumberOfVerts", &vertices) || vertices < 0) vertices = 0;
+  if (!EqmXmlInteger(piece, "NumberOfLines", &lines) || lines < 0) lines = 0;
+  return PetscMin(vertices, PETSC_MAX_INT) + PetscMin(lines, PETSC_MAX_INT);
 }
 
 static PetscErrorCode ParsePiece(const EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr piece,
@@ -118,11 +165,12 @@ static PetscErrorCode ParsePiece(const EqmVtuEncoding *encoding, EqmBuilder *bui
                         polygons = {"NumberOfPolys", "Polys", PETSC_FALSE, PETSC_FALSE},
                         strips = {"NumberOfStrips", "Strips", PETSC_FALSE, PETSC_TRUE};
   const PetscInt64 first_vertex = (PetscInt64)builder->num_vertices;
-  PetscInt64 num_points;
+  PetscInt64 num_points, row = surface ? RowsBefore(piece) : 0;
 
   EqmTry(ParsePoints(encoding, builder, piece, &num_points));
-  EqmTry(ParseCells(encoding, builder, piece, surface ? &polygons : &grid, first_vertex, num_points));
-  return surface ? ParseCells(encoding, builder, piece, &strips, first_vertex, num_points) : 0;
+  EqmTry(ParseCells(encoding, builder, piece, surface ? &polygons : &grid, first_vertex, num_points, &row));
+  if (surface) EqmTry(ParseCells(encoding, builder, piece, &strips, first_vertex, num_points, &row));
+  return first_vertex ? 0 : ParsePieceFields(encoding, builder, piece, num_points, row);
 }
 
 static PetscErrorCode ParseDocument(EqmVtuEncoding *encoding, EqmBuilder *builder, xmlNodePtr root)
@@ -142,7 +190,13 @@ static PetscErrorCode ParseDocument(EqmVtuEncoding *encoding, EqmBuilder *builde
   }
   EqmTry(ParseEncoding(encoding, root));
   for (xmlNodePtr piece = EqmXmlChild(grid ? grid : surface, "Piece"); piece; piece = EqmXmlNext(piece, "Piece")) {
+    const size_t before = builder->num_vertices;
+
     EqmTry(ParsePiece(encoding, builder, piece, grid ? PETSC_FALSE : PETSC_TRUE));
+    if (before && builder->num_vertices > before) {
+      if (builder->num_fields) EqmBuilderNoteLeft(builder, "fields of several pieces");
+      while (builder->num_fields) EqmTry(EqmBuilderDropField(builder));
+    }
   }
   return 0;
 }
@@ -198,7 +252,12 @@ static PetscErrorCode ParseVtu(const char *bytes, size_t length, EqmSerialMesh *
   return EqmBuilderFinish(&builder, ParseMesh(&encoding, &builder), mesh);
 }
 
-EQM_DEFINE_FORMAT(Vtu) = {
-    .name = "VTU", .suffixes = "vtu", .recognise = RecogniseVtu, .parse = ParseVtu, .write = EqmWriteVtu};
+EQM_DEFINE_FORMAT(Vtu) = {.name = "VTU",
+                          .suffixes = "vtu",
+                          .recognise = RecogniseVtu,
+                          .parse = ParseVtu,
+                          .write = EqmWriteVtu,
+                          .vertex_fields = PETSC_TRUE,
+                          .cell_fields = PETSC_TRUE};
 
 EQM_DEFINE_FORMAT(Vtp) = {.name = "VTP", .suffixes = "vtp", .recognise = RecogniseVtu, .parse = ParseVtu};

@@ -1,6 +1,7 @@
 /* EqmSoupWrite, and the one-rank writer below it. */
 #include "format.h"
 #include "mesh/soup_private.h"
+#include "mesh/fields.h"
 #include "input.h"
 #include "base/nearest.h"
 
@@ -19,7 +20,34 @@ static PetscErrorCode RejectSuffix(const char *file, char *error, size_t length)
   return EQM_ERR_USAGE;
 }
 
-/* EqmFormatWriteSerial - write a mesh and its fields, the format by suffix, from this rank.
+/* Is there a field of that name among those of the writer? They go before the mesh's own. */
+static PetscBool IsTaken(const EqmMeshField *field, const EqmField *fields, PetscInt num_fields)
+{
+  for (PetscInt f = 0; f < num_fields; ++f) {
+    if (fields[f].on_cells == field->on_cells && !strcmp(fields[f].name, field->name)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* The given fields, those of the mesh, and texture coordinates as a field where the format has no place for them. */
+static PetscErrorCode JoinFields(const EqmFormat *format, const EqmSerialMesh *mesh, const EqmField *fields,
+                                 PetscInt num_fields, EqmField **all, PetscInt *num_all)
+{
+  EqmTry(PetscMalloc1(num_fields + mesh->num_fields + 1, all));
+  *num_all = 0;
+  for (PetscInt f = 0; f < num_fields; ++f) (*all)[(*num_all)++] = fields[f];
+  for (PetscInt f = 0; f < mesh->num_fields; ++f) {
+    const EqmMeshField *const field = &mesh->fields[f];
+
+    if (!IsTaken(field, fields, num_fields))
+      (*all)[(*num_all)++] = (EqmField){field->name, field->on_cells, field->width, field->values};
+  }
+  if (mesh->texture && !format->writes_texture)
+    (*all)[(*num_all)++] = (EqmField){EQM_FIELD_TEXTURE, PETSC_TRUE, 2 * mesh->cell_size, mesh->texture};
+  return 0;
+}
+
+/* EqmFormatWriteSerial - write a mesh, the fields given and its own, the format by suffix, from this rank.
 
    Not collective. The file is there complete or not at all. Errors (quiet, reason in `error`): EQM_ERR_USAGE (unknown
    suffix, a format that all ranks must write, tetrahedra in a surface format), EQM_ERR_IO. */
@@ -28,16 +56,48 @@ PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh,
 {
   const EqmFormat *format = EqmFormatOfSuffix(file);
   EqmAtomicFile out;
+  EqmField *all;
+  PetscInt num_all;
   char reason[256] = "";
   PetscErrorCode code;
 
   if (!format || !format->write) return RejectSuffix(file, error, length);
-  EqmTry(EqmAtomicOpen(file, &out, error, length));
-  code = format->write(&out, mesh, fields, num_fields, reason, sizeof(reason));
-  if (!code) return EqmAtomicCommit(&out, error, length);
-  snprintf(error, length, "cannot write %s: %s", file, reason);
-  EqmAtomicAbort(&out);
+  EqmTry(JoinFields(format, mesh, fields, num_fields, &all, &num_all));
+  code = EqmAtomicOpen(file, &out, error, length);
+  if (!code) {
+    code = format->write(&out, mesh, all, num_all, reason, sizeof(reason));
+    if (!code) {
+      code = EqmAtomicCommit(&out, error, length);
+    } else {
+      snprintf(error, length, "cannot write %s: %s", file, reason);
+      EqmAtomicAbort(&out);
+    }
+  }
+  EqmTry(PetscFree(all));
   return code;
+}
+
+static PetscBool Holds(const EqmFormat *format, PetscBool is_map, const EqmMeshField *field)
+{
+  if (is_map && EqmMeshFieldIsOfResult(field->name)) return PETSC_TRUE; /* there is a newer one */
+  if (format->write_parallel) return PETSC_TRUE;                        /* HDF5 */
+  if (!strcmp(field->name, EQM_FIELD_TEXTURE) && field->on_cells && format->writes_texture)
+    return is_map ? PETSC_FALSE : PETSC_TRUE;
+  if (!strcmp(field->name, EQM_FIELD_GROUP) && field->on_cells && format->groups) return PETSC_TRUE;
+  return field->on_cells ? format->cell_fields : format->vertex_fields;
+}
+
+void EqmFormatDescribeDropped(const char *file, PetscBool is_map, PetscInt num_fields, const EqmMeshField *fields,
+                              char *text, size_t length)
+{
+  const EqmFormat *const format = EqmFormatOfSuffix(file);
+  size_t used = 0;
+
+  text[0] = '\0';
+  for (PetscInt f = 0; f < num_fields && format && used < length; ++f) {
+    if (!Holds(format, is_map, &fields[f]))
+      used += (size_t)snprintf(text + used, length - used, "%s%s", used ? ", " : "", fields[f].name);
+  }
 }
 
 /* Gather on rank 0 and write there. */

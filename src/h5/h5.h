@@ -21,6 +21,9 @@ struct _p_EqmH5 {
   void *printer_data;
 };
 
+/* Longest name in a list of arrays, terminating zero included. */
+#define EQM_H5_NAME 128
+
 /* One rank's part of an array whose first dimension is dealt to the ranks in contiguous slabs. */
 typedef struct {
   PetscInt total; /* rows on all ranks */
@@ -50,6 +53,7 @@ PETSC_INTERN PetscErrorCode EqmH5PutChecksum(EqmH5 h5, const char *path, PetscIn
 PETSC_INTERN PetscErrorCode EqmH5GetChecksum(EqmH5 h5, const char *path, PetscInt64 *checksum);
 
 PETSC_INTERN PetscErrorCode EqmH5HasDataset(EqmH5 h5, const char *path, PetscBool *has);
+PETSC_INTERN PetscErrorCode EqmH5ListNumbers(EqmH5 h5, const char *group, PetscInt *num, char (**names)[EQM_H5_NAME]);
 PETSC_INTERN PetscErrorCode EqmH5GetShape(EqmH5 h5, const char *path, PetscInt64 *total, PetscInt64 *width);
 PETSC_INTERN PetscErrorCode EqmH5ReadReals(EqmH5 h5, const char *path, EqmSlab slab, PetscReal *values);
 PETSC_INTERN PetscErrorCode EqmH5ReadIntegers(EqmH5 h5, const char *path, EqmSlab slab, PetscInt64 *values);

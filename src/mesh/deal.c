@@ -1,9 +1,10 @@
 /* A mesh that one rank holds, dealt to all in slabs, and gathered again. */
 #include "mesh/build.h"
 #include "mesh/soup_private.h"
+#include "mesh/fields.h"
 #include <string.h>
 
-enum { TAG_VERTICES = 1, TAG_CELLS = 2 };
+enum { TAG_VERTICES = 1, TAG_CELLS = 2, TAG_FIELD = 3 };
 
 /* First row of a rank's share of `total` rows: contiguous, in rank order, sizes that differ by one at most. */
 static PetscInt ShareStart(PetscInt total, PetscMPIInt rank, PetscMPIInt size)
@@ -107,6 +108,39 @@ static PetscErrorCode Deal(MPI_Comm comm, PetscInt total, MPI_Datatype number, P
   PetscFunctionReturn(0);
 }
 
+/* What a field is, without its values. */
+typedef struct {
+  char name[EQM_FIELD_NAME];
+  PetscInt on_cells, width;
+} FieldKind;
+
+/* Deal the fields of rank 0, one after the other. Collective. */
+static PetscErrorCode DealFields(MPI_Comm comm, EqmSerialMesh *mesh, EqmSoup soup)
+{
+  PetscInt num = mesh->num_fields, rows;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Bcast(&num, 1, MPIU_INT, 0, comm));
+  if (num) PetscCall(PetscCalloc1(num, &soup->fields));
+  soup->num_fields = num;
+  for (PetscInt f = 0; f < num; ++f) {
+    const EqmMeshField *const all = mesh->num_fields ? &mesh->fields[f] : NULL;
+    EqmMeshField *const field = &soup->fields[f];
+    FieldKind kind = {.on_cells = all ? all->on_cells : 0, .width = all ? all->width : 0};
+
+    if (all) PetscCall(PetscStrncpy(kind.name, all->name, sizeof(kind.name)));
+    PetscCallMPI(MPI_Bcast(&kind, sizeof(kind), MPI_BYTE, 0, comm));
+    PetscCall(PetscStrncpy(field->name, kind.name, sizeof(field->name)));
+    field->on_cells = kind.on_cells ? PETSC_TRUE : PETSC_FALSE;
+    field->width = kind.width;
+    PetscCall(Deal(comm, field->on_cells ? soup->num_cells : soup->num_vertices, MPIU_REAL, kind.width, TAG_FIELD,
+                   all ? all->values : NULL, &rows, (void **)&field->values));
+  }
+  PetscCall(PetscFree(mesh->fields)); /* their values are the soup's now */
+  mesh->num_fields = 0;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const char *file, EqmSoup *soup)
 {
   EqmSerialMesh mesh = {0};
@@ -126,12 +160,15 @@ PetscErrorCode EqmSoupCreateFromRoot(MPI_Comm comm, EqmSerialMesh *serial, const
   PetscCallMPI(MPI_Bcast(shape, 3, MPIU_INT, 0, comm));
   PetscCall(Deal(comm, shape[0], MPIU_REAL, 3, TAG_VERTICES, mesh.vertices, &num_vertices, &vertices));
   PetscCall(Deal(comm, shape[1], MPIU_INT, shape[2], TAG_CELLS, mesh.cells, &num_cells, &cells));
-  PetscCall(PetscFree(mesh.texture)); /* a soup has none */
+  PetscCall(EqmMeshFieldsTakeTexture(&mesh));
   PetscCall(ShareText(comm, &mesh.metadata));
   PetscCallMPI(MPI_Bcast(mesh.note, EQM_SOUP_NOTE, MPI_CHAR, 0, comm));
+  PetscCallMPI(MPI_Bcast(mesh.left, EQM_SOUP_NOTE, MPI_CHAR, 0, comm));
   PetscCall(EqmSoupCreateFromSlabs(comm, shape[2], num_vertices, vertices, num_cells, cells, file, soup));
   PetscCall(PetscStrncpy((*soup)->note, mesh.note, EQM_SOUP_NOTE));
+  PetscCall(PetscStrncpy((*soup)->left, mesh.left, EQM_SOUP_NOTE));
   (*soup)->metadata = mesh.metadata;
+  PetscCall(DealFields(comm, &mesh, *soup));
   PetscFunctionReturn(0);
 }
 
@@ -145,6 +182,28 @@ static PetscErrorCode GivenStarts(MPI_Comm comm, PetscInt slab_end, PetscInt **s
   PetscCall(PetscMalloc1(size + 1, start));
   (*start)[0] = 0;
   PetscCallMPI(MPI_Allgather(&slab_end, 1, MPIU_INT, *start + 1, 1, MPIU_INT, comm));
+  PetscFunctionReturn(0);
+}
+
+/* Bring the values of all fields together on rank 0, whose slab is the beginning. Collective. */
+static PetscErrorCode GatherFields(EqmSoup soup, PetscBool on_cells, const PetscInt *start, EqmSerialMesh *serial)
+{
+  const size_t total = (size_t)(on_cells ? soup->num_cells : soup->num_vertices);
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
+  for (PetscInt f = 0; f < soup->num_fields; ++f) {
+    const EqmMeshField *const field = &soup->fields[f];
+    PetscReal *values = NULL;
+
+    if (field->on_cells != on_cells) continue;
+    if (rank == 0) {
+      PetscCall(EqmMeshFieldsAdd(&serial->num_fields, &serial->fields, field, total, &values));
+      PetscCall(PetscArraycpy(values, field->values, (size_t)start[1] * (size_t)field->width));
+    }
+    PetscCall(Transfer(soup->comm, PETSC_FALSE, MPIU_REAL, field->width, TAG_FIELD, start, values, field->values));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -169,9 +228,12 @@ PetscErrorCode EqmSoupGather(EqmSoup soup, EqmSerialMesh *serial)
   }
   PetscCall(GivenStarts(soup->comm, soup->vertex_end, &start));
   PetscCall(Transfer(soup->comm, PETSC_FALSE, MPIU_REAL, 3, TAG_VERTICES, start, serial->vertices, soup->vertices));
+  PetscCall(GatherFields(soup, PETSC_FALSE, start, serial));
   PetscCall(PetscFree(start));
   PetscCall(GivenStarts(soup->comm, soup->cell_end, &start));
   PetscCall(Transfer(soup->comm, PETSC_FALSE, MPIU_INT, soup->cell_size, TAG_CELLS, start, serial->cells, soup->cells));
+  PetscCall(GatherFields(soup, PETSC_TRUE, start, serial));
   PetscCall(PetscFree(start));
+  PetscCall(EqmMeshFieldsGiveTexture(serial));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,7 @@
 /* The mesh of a file, dealt to the ranks in contiguous slabs of vertices and of cells. */
 #include "mesh/build.h"
 #include "mesh/soup_private.h"
+#include "mesh/fields.h"
 #include "base/checksum.h"
 #include <string.h>
 
@@ -67,6 +68,17 @@ PetscErrorCode EqmSoupCreateFromSlabs(MPI_Comm comm, PetscInt cell_size, PetscIn
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CopyField(const EqmMeshField *field, size_t num_vertices, size_t num_cells, EqmSoup copy)
+{
+  const size_t rows = field->on_cells ? num_cells : num_vertices;
+  PetscReal *values;
+
+  PetscFunctionBegin;
+  PetscCall(EqmMeshFieldsAdd(&copy->num_fields, &copy->fields, field, rows, &values));
+  PetscCall(PetscArraycpy(values, field->values, rows * (size_t)field->width));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
 {
   const size_t num_vertices = (size_t)(soup->vertex_end - soup->vertex_start);
@@ -78,6 +90,9 @@ PetscErrorCode EqmSoupCopy(EqmSoup soup, EqmSoup *copy)
   *s = *soup;
   PetscCall(PetscStrallocpy(soup->metadata, &s->metadata));
   s->density = s->edge_length = NULL;
+  s->num_fields = 0;
+  s->fields = NULL;
+  for (PetscInt f = 0; f < soup->num_fields; f++) PetscCall(CopyField(&soup->fields[f], num_vertices, num_cells, s));
   PetscCall(PetscMalloc1(3 * num_vertices, &s->vertices));
   PetscCall(PetscMalloc1(width * num_cells, &s->cells));
   PetscCall(PetscArraycpy(s->vertices, soup->vertices, 3 * num_vertices));
@@ -103,6 +118,7 @@ PetscErrorCode EqmSoupDestroy(EqmSoup *soup)
   PetscCall(PetscFree((*soup)->density));
   PetscCall(PetscFree((*soup)->edge_length));
   PetscCall(PetscFree((*soup)->metadata));
+  PetscCall(EqmMeshFieldsReset(&(*soup)->num_fields, &(*soup)->fields));
   PetscCall(PetscFree(*soup));
   PetscFunctionReturn(0);
 }
@@ -114,6 +130,7 @@ PetscErrorCode EqmSerialMeshReset(EqmSerialMesh *serial)
   PetscCall(PetscFree(serial->cells));
   PetscCall(PetscFree(serial->texture));
   PetscCall(PetscFree(serial->metadata));
+  PetscCall(EqmMeshFieldsReset(&serial->num_fields, &serial->fields));
   memset(serial, 0, sizeof(*serial));
   PetscFunctionReturn(0);
 }

@@ -16,7 +16,10 @@ struct _p_EqmSoup {
   PetscReal *edge_length; /* per cell of the slab and corner, of the edge opposite; NULL: edges are straight in space */
   char file[PETSC_MAX_PATH_LEN]; /* where it came from */
   char note[EQM_SOUP_NOTE];      /* what its reader changed, in plain words; "": nothing */
+  char left[EQM_SOUP_NOTE];      /* what of the file its reader left out, a list; "": nothing */
   char *metadata;                /* what the file says beside the mesh, the same on every rank, or NULL */
+  PetscInt num_fields;           /* what the file has per vertex and cell beside the mesh */
+  EqmMeshField *fields;          /* names and widths are the same on every rank, values are those of the slabs */
   PetscInt64 checksum;           /* CRC-32 of vertices and cells in input order, rank-independent */
 };
 

@@ -109,6 +109,7 @@ static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOption
 {
   EqmSolverSettings *const set = &solver->settings;
   char methods[EQM_MESSAGE_MAX] = "the iteration: ";
+  PetscBool monitor = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(EqmFormulationMethodNames(solver->target, NULL, methods + 15, sizeof(methods) - 15));
@@ -124,7 +125,12 @@ static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOption
                              "weight of the angle energy beside the area energy; .01 gives one nearly unique, smoother "
                              "map (-1: the method's own, 0: none)",
                              "EqmSolverSetFromOptions", set->balance, &set->balance, NULL));
-  if (!solver->prefix[0]) PetscCall(ReadRunOptions(set, PetscOptionsObject)); /* once per run, not per inner solver */
+  if (!solver->prefix[0]) { /* once per run, not per inner solver */
+    PetscCall(ReadRunOptions(set, PetscOptionsObject));
+    PetscCall(PetscOptionsBool("-monitor", "show progress; equimap itself always does, unless -quiet",
+                               "EqmSolverMonitorText", monitor, &monitor, NULL));
+  }
+  if (monitor && !solver->monitor) PetscCall(EqmSolverSetMonitor(solver, EqmSolverMonitorText, NULL));
   if (!strcmp(solver->formulation->domain, "square")) PetscCall(ReadCorners(solver, PetscOptionsObject));
   if (!strcmp(solver->target, "disk"))
     PetscCall(

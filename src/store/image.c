@@ -3,6 +3,7 @@
  */
 #include "store/map_private.h"
 #include "mesh/soup_private.h"
+#include "mesh/fields.h"
 #include "store/store.h"
 #include "format/format.h"
 #include "base/rows.h"
@@ -56,7 +57,24 @@ static PetscErrorCode GatherField(EqmMap map, const char *name, PetscBool on_cel
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Gather(EqmMap map, Gathered *all)
+/* On rank 0: of the input's fields those that will not be mistaken for the map's; its texture coordinates where they
+   are one field more (`texture`), since in OBJ and PLY they would be taken for the map. */
+static void KeepFields(EqmSerialMesh *mesh, PetscBool texture)
+{
+  PetscInt kept = 0;
+
+  for (PetscInt f = 0; f < mesh->num_fields; f++) {
+    const EqmMeshField field = mesh->fields[f];
+    if (EqmMeshFieldIsOfResult(field.name))
+      (void)PetscFree(mesh->fields[f].values);
+    else
+      mesh->fields[kept++] = field;
+  }
+  mesh->num_fields = kept;
+  if (!texture) (void)PetscFree(mesh->texture);
+}
+
+static PetscErrorCode Gather(EqmMap map, PetscBool texture, Gathered *all)
 {
   const EqmSoup soup = map->soup;
   PetscInt n;
@@ -64,6 +82,7 @@ static PetscErrorCode Gather(EqmMap map, Gathered *all)
   PetscFunctionBegin;
   PetscCall(PetscMemzero(all, sizeof(*all)));
   PetscCall(EqmSoupGather(soup, &all->mesh));
+  KeepFields(&all->mesh, texture);
   n = all->mesh.num_vertices;
   PetscCall(PetscMalloc1(map->dim * n, &all->images));
   PetscCall(GatherReals(soup->comm, map->dim, soup->vertex_end - soup->vertex_start, map->coordinates, all->images));
@@ -87,12 +106,12 @@ static PetscErrorCode Reset(Gathered *all)
 }
 
 /* On rank 0: the positions of the vertices go into `points`, their images into the mesh. */
-static void MoveVertices(PetscInt dim, Gathered *all)
+static void MoveVertices(PetscInt dim, PetscReal scale, Gathered *all)
 {
   for (PetscInt i = 0; i < all->mesh.num_vertices; i++) {
     for (PetscInt d = 0; d < 3; d++) {
       all->points[3 * i + d] = all->mesh.vertices[3 * i + d];
-      all->mesh.vertices[3 * i + d] = d < dim ? all->images[dim * i + d] : 0.;
+      all->mesh.vertices[3 * i + d] = d < dim ? scale * all->images[dim * i + d] : 0.;
     }
   }
 }
@@ -129,9 +148,18 @@ static PetscErrorCode WriteFiles(EqmMap map, const char *file, Gathered *all, ch
     if (*error) PetscFunctionReturn(0);
     all->num_fields = num_fields;
   }
-  MoveVertices(map->dim, all);
+  MoveVertices(map->dim, map->image_scale, all);
   if (EqmHasSuffix(file, ".vtu") || EqmHasSuffix(file, ".vtk")) AddField(all, "surface", PETSC_FALSE, 3, all->points);
   *error = EqmFormatWriteSerial(file, &all->mesh, all->fields, all->num_fields, message, length);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMapSetImageScale(EqmMap map, PetscReal scale)
+{
+  PetscFunctionBegin;
+  if (!(scale > 0.) || PetscIsInfOrNanReal(scale))
+    EqmFail(map->soup->comm, EQM_ERR_USAGE, "-radius %g: give a positive number", (double)scale);
+  map->image_scale = scale;
   PetscFunctionReturn(0);
 }
 
@@ -142,9 +170,11 @@ PetscErrorCode EqmMapWriteImage(EqmMap map, const char *file)
   PetscMPIInt rank;
   Gathered all;
 
+  const EqmFormat *const format = EqmFormatOfSuffix(file);
+
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(map->soup->comm, &rank));
-  PetscCall(Gather(map, &all));
+  PetscCall(Gather(map, (PetscBool)(format && !format->writes_texture), &all));
   if (rank == 0) PetscCall(WriteFiles(map, file, &all, message, sizeof(message), &error));
   PetscCall(Reset(&all));
   PetscCall(EqmAgree(map->soup->comm, error, message));

@@ -19,6 +19,7 @@ PetscErrorCode EqmMapCreate(EqmSoup soup, PetscInt dim, EqmMap *map)
   PetscCall(PetscNew(&new_map));
   new_map->soup = soup;
   new_map->dim = dim;
+  new_map->image_scale = 1.;
   PetscCall(PetscCalloc1(dim * num_vertices, &new_map->coordinates));
   PetscCall(PetscCalloc1(num_cells, &new_map->cell_ratio));
   PetscCall(PetscCalloc1(num_vertices, &new_map->vertex_ratio));

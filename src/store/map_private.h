@@ -57,6 +57,7 @@ struct _p_EqmMap {
   EqmMap repaired;        /* where the input was repaired first: the map of the repaired mesh; referenced, not owned */
   const PetscInt *parent; /* with `repaired`: per cell of its soup's slab the input cell it comes from; referenced */
   EqmRepair repair;       /* with `repaired`: what was done */
+  PetscReal image_scale;  /* of the images in mesh formats */
   PetscInt num_prepared;  /* what was done to the input before that */
   EqmPreparedFigure *prepared;
   PetscInt num_arrays, num_figures; /* what a program adds to the result */

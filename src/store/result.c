@@ -2,6 +2,7 @@
 #include "store/map_private.h"
 #include "mesh/soup_private.h"
 #include "store/store.h"
+#include "format/hdf5.h"
 #include "h5/h5.h"
 #include <stddef.h>
 
@@ -129,6 +130,7 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5DeclareReals(h5, "/vertex/ratio", soup->num_vertices, 0));
   if (soup->cell_size == 3) PetscCall(DeclareAngles(h5, soup));
   if (soup->density) PetscCall(EqmH5DeclareReals(h5, "/cell/density", soup->num_cells, 0));
+  PetscCall(EqmSoupDeclareFieldsHdf5(h5, soup, PETSC_TRUE));
   PetscCall(EqmH5DeclareIntegers(h5, "/history/iteration", map->num_history, 0));
   for (int k = 0; k < LENGTH(history_reals); k++)
     PetscCall(EqmH5DeclareReals(h5, history_reals[k].path, map->num_history, 0));
@@ -304,6 +306,7 @@ static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5WriteReals(h5, "/vertex/ratio", VertexSlab(soup, 0), map->vertex_ratio));
   if (soup->cell_size == 3) PetscCall(WriteAngles(h5, map));
   if (soup->density) PetscCall(EqmH5WriteReals(h5, "/cell/density", CellSlab(soup, 0), soup->density));
+  PetscCall(EqmSoupWriteFieldsHdf5(h5, soup, PETSC_TRUE));
   PetscCall(WriteHistory(h5, map));
   if (map->num_hessian_eigenvalues)
     PetscCall(EqmH5WriteReals(h5, "/map/hessian_eigenvalues", HessianSlab(map, h5->rank), map->hessian_eigenvalues));

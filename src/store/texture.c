@@ -72,6 +72,7 @@ static PetscErrorCode MakeTextured(EqmMap map, EqmSerialMesh *mesh)
   PetscCall(EqmFetchSlab(soup->comm, soup->vertex_end - soup->vertex_start, mesh->num_vertices, 0, MPIU_REAL, map->dim,
                          map->coordinates, images));
   if (rank == 0) {
+    PetscCall(PetscFree(mesh->texture)); /* the input's own */
     PetscCall(PetscMalloc1(6 * (size_t)mesh->num_cells, &mesh->texture));
     if (map->dim == 2)
       FillFromPlane(mesh, images, mesh->texture);

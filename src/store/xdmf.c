@@ -3,6 +3,7 @@
 #include "store/map_private.h"
 #include "mesh/soup_private.h"
 #include "store/store.h"
+#include "format/hdf5.h"
 #include "base/atomicfile.h"
 #include <errno.h>
 #include <libxml/xmlwriter.h>
@@ -62,6 +63,19 @@ static void Field(Writer *writer, const char *name, const char *center, const ch
   Close(writer);
 }
 
+/* What the input has per vertex and cell beside its mesh. */
+static void InputFields(Writer *writer, EqmSoup soup)
+{
+  char path[EQM_FIELD_NAME + 16];
+
+  for (PetscInt f = 0; f < soup->num_fields; f++) {
+    const EqmMeshField *const field = &soup->fields[f];
+    if (!EqmSoupHasFieldHdf5(soup, field, path, sizeof(path))) continue;
+    Field(writer, field->name, field->on_cells ? "Cell" : "Node", path,
+          field->on_cells ? soup->num_cells : soup->num_vertices, field->width);
+  }
+}
+
 /* The cells with their fields, at the points of one array; the grid is left open. */
 static void Grid(Writer *writer, const char *name, EqmSoup soup, const char *points, PetscInt dim)
 {
@@ -87,6 +101,7 @@ static void Grid(Writer *writer, const char *name, EqmSoup soup, const char *poi
     Field(writer, "conformal_factor", "Node", "/vertex/conformal_factor", soup->num_vertices, 1);
   }
   if (soup->density) Field(writer, "density", "Cell", "/cell/density", soup->num_cells, 1);
+  InputFields(writer, soup);
 }
 
 /* The grids of a document. */

@@ -21,7 +21,7 @@ from program import Program  # noqa: E402
 def table():
     """The rows, as (suffix, read, written, readers of surfaces, readers of solids)."""
     with open(os.path.join(TOP, "docs", "formats.md"), encoding="utf-8") as stream:
-        lines = [line for line in stream if line.startswith("| ")]
+        lines = [line for line in stream.read().partition("\n## ")[0].splitlines() if line.startswith("| ")]
     rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines[1:]]
     words = [[re.findall(r"\w+", cell) for cell in row[2:]] for row in rows]
     return [(row[1].strip("`."), *cells) for row, cells in zip(rows, words)]
