@@ -48,7 +48,8 @@ static void PrintUsage(void)
          EqmVersion());
   for (int k = 0; k < NUM_COMMANDS; k++)
     printf("  equimap %-9s %-18s %s\n", commands[k].name, commands[k].usage, EqmCommandPurpose(&commands[k]));
-  printf("\nequimap COMMAND --help lists the options of a command. To begin with:\n"
+  printf("\nequimap COMMAND --help lists the options of a command. One dash or two: -method lm, --method lm and\n"
+         "--method=lm are the same option. To begin with:\n"
          "  equimap generate hills -n 20000 -o hills.obj\n"
          "  equimap disk hills.obj -o hills.h5 && equimap report hills.h5 -o hills.png\n");
 }

@@ -144,6 +144,25 @@ static PetscErrorCode CheckPositive(EqmSoup soup, const char *file, const PetscR
   PetscFunctionReturn(0);
 }
 
+/* Masses that far apart leave nothing of the smaller in any sum. */
+static PetscErrorCode CheckSpan(EqmSoup soup, const char *file, const PetscReal *density)
+{
+  const PetscReal most = 1e100;
+  PetscReal ends[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < soup->cell_end - soup->cell_start; i++) {
+    ends[0] = PetscMin(ends[0], density[i]);
+    ends[1] = PetscMin(ends[1], 1. / PetscMax(density[i], PETSC_MIN_REAL)); /* the largest, by its inverse */
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, ends, 2, MPIU_REAL, MPIU_MIN, soup->comm));
+  if (ends[0] * ends[1] >= 1. / most || soup->num_cells == 0) PetscFunctionReturn(0);
+  EqmFail(
+      soup->comm, EQM_ERR_MESH,
+      "%s: the densities run from %g to %g; more than a factor of %g between them no arithmetic of doubles resolves",
+      file, (double)ends[0], (double)(1. / ends[1]), (double)most);
+}
+
 static PetscErrorCode FillDensity(EqmSoup soup, const char *file, PetscReal *density)
 {
   PetscReal *values = NULL;
@@ -167,6 +186,7 @@ static PetscErrorCode FillDensity(EqmSoup soup, const char *file, PetscReal *den
   PetscCall(PetscFree(values));
   PetscCall(code);
   PetscCall(CheckPositive(soup, file, density));
+  PetscCall(CheckSpan(soup, file, density));
   PetscFunctionReturn(0);
 }
 

@@ -142,7 +142,24 @@ static PetscErrorCode CopyDistortion(EqmMap measured, const MappedCells *cells, 
   PetscFunctionReturn(0);
 }
 
-/* Add the figures of the prepared mesh's map; folds of the file's cells decide the status. */
+/* As the solver judges maps: ratios off by half, root mean square, are none of equal areas. */
+static PetscErrorCode DoubtGiven(EqmMap map)
+{
+  const PetscReal poor_sd = .5;
+
+  PetscFunctionBegin;
+  if (map->distortion.folds > 0 || map->status != EQM_STATUS_CONVERGED || map->distortion.weighted_ratio.sd <= poor_sd)
+    PetscFunctionReturn(0);
+  map->status = EQM_STATUS_NOT_CONVERGED;
+  map->poor = PETSC_TRUE;
+  PetscCall(PetscStrncpy(map->message,
+                         "the map of the file's own cells is poor, far from equal measures: where cells were split, "
+                         "their parts are mapped well and they are not",
+                         sizeof(map->message)));
+  PetscFunctionReturn(0);
+}
+
+/* Add the figures of the prepared mesh's map; folds and ratios of the file's cells decide the status. */
 static PetscErrorCode Judge(EqmMap found, const char *target, PetscInt64 num_cut, EqmMap map)
 {
   const PetscBool keeps_angles = (PetscBool)!strcmp(target, "conformal");
@@ -156,6 +173,7 @@ static PetscErrorCode Judge(EqmMap found, const char *target, PetscInt64 num_cut
   PetscCall(EqmMapAddCount(map, "prepared_mesh.folds", found->distortion.folds));
   PetscCall(EqmMapAddCount(map, "prepared_mesh.cells_cut_off", num_cut));
   if (!keeps_angles) PetscCall(EqmMapSetEnergies(map, map->energy_initial, map->distortion.energy));
+  if (!keeps_angles) PetscCall(DoubtGiven(map));
   if (folds == 0 || (map->status != EQM_STATUS_CONVERGED && map->status != EQM_STATUS_NOT_CONVERGED))
     PetscFunctionReturn(0);
   map->status = EQM_STATUS_FOLDS;

@@ -43,12 +43,31 @@ PetscErrorCode EqmMeshMakeBlocks(EqmMesh mesh)
   PetscFunctionReturn(0);
 }
 
+/* A power of two that brings densities beyond 1e100 near one, so that neither masses nor their quotients overflow or
+   vanish; 1, and nothing changes, for all others. Collective. */
+static PetscErrorCode DensityScale(EqmMesh mesh, const PetscReal *cell_density, PetscReal *scale)
+{
+  PetscReal largest = 0.;
+  int exponent;
+
+  PetscFunctionBegin;
+  *scale = 1.;
+  if (!cell_density) PetscFunctionReturn(0);
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) largest = PetscMax(largest, cell_density[c]);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, mesh->comm));
+  (void)frexp(largest, &exponent);
+  if (exponent > 332) *scale = ldexp(1., -exponent);
+  if (exponent < -332) *scale = ldexp(1., PetscMin(-exponent, 1000));
+  PetscFunctionReturn(0);
+}
+
 /* Area or volume of every local cell; weights with the density inside, normalised to a sum of one. Collective. */
 PetscErrorCode EqmMeshMeasure(EqmMesh mesh, const PetscReal *cell_density)
 {
-  PetscReal sum = 0.;
+  PetscReal sum = 0., scale;
 
   PetscFunctionBegin;
+  PetscCall(DensityScale(mesh, cell_density, &scale));
   PetscCall(PetscMalloc1(mesh->num_local_cells, &mesh->cell_measure));
   PetscCall(PetscMalloc1(mesh->num_local_cells, &mesh->weight));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
@@ -58,10 +77,11 @@ PetscErrorCode EqmMeshMeasure(EqmMesh mesh, const PetscReal *cell_density)
                             : mesh->cell_size == 3
                                 ? EqmArea3(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2])
                                 : PetscAbsReal(EqmVolume(p + 3 * v[0], p + 3 * v[1], p + 3 * v[2], p + 3 * v[3]));
-    mesh->weight[c] = mesh->cell_measure[c] * (cell_density ? cell_density[c] : 1.);
+    mesh->weight[c] = mesh->cell_measure[c] * (cell_density ? scale * cell_density[c] : 1.);
     if (c < mesh->num_owned_cells) sum += mesh->weight[c];
   }
   PetscCall(MPIU_Allreduce(&sum, &mesh->measure, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) mesh->weight[c] /= mesh->measure;
+  mesh->measure /= scale;
   PetscFunctionReturn(0);
 }

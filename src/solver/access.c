@@ -234,6 +234,7 @@ static PetscErrorCode TakeHistory(EqmSolver solver, EqmMap map)
   map->energy_initial = solver->history[0].energy;
   map->energy_final = solver->iterate->totals.energy;
   map->status = solver->status;
+  map->poor = solver->poor;
   map->num_boundary_vertices = solver->mesh->num_boundary_vertices;
   map->cost.ranks = solver->mesh->size;
   PetscCall(PetscStrncpy(map->message, solver->message, sizeof(map->message)));

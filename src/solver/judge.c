@@ -14,19 +14,19 @@ static PetscBool Stagnates(EqmSolver solver)
                      then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
 }
 
-/* A method that has converged, but to a map far from equal areas, has not converged. */
-static PetscErrorCode RejectPoorMap(EqmSolver solver)
+/* Is the map so far from equal areas that it is of no use as such? */
+static PetscBool IsPoor(EqmSolver solver)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
   const PetscReal poor = solver->problem->objective->poor_energy;
 
-  PetscFunctionBegin;
-  if (poor == 0. || totals->energy <= poor * totals->total) PetscFunctionReturn(0);
-  solver->status = EQM_STATUS_NOT_CONVERGED;
-  PetscCall(PetscStrlcat(solver->message,
-                         ", far from equal areas: the target may not suit the mesh (corners? slivers?)",
-                         sizeof(solver->message)));
-  PetscFunctionReturn(0);
+  return (PetscBool)(poor > 0. && !(totals->energy <= poor * totals->total));
+}
+
+/* A method that has converged, but to a map far from equal areas, has not converged. */
+static void RejectPoorMap(EqmSolver solver)
+{
+  if (IsPoor(solver)) solver->status = EQM_STATUS_NOT_CONVERGED;
 }
 
 /* Energy target, ratios, gradient: is one of them reached? */
@@ -106,7 +106,7 @@ PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop)
                             "the objective fell by less than %g %% per iteration over the last %" PetscInt_FMT
                             " iterations",
                             100. * (double)solver->settings.energy_rtol, solver->settings.stagnation));
-    PetscCall(RejectPoorMap(solver));
+    RejectPoorMap(solver);
     PetscFunctionReturn(0);
   }
   solver->status = EQM_STATUS_NOT_CONVERGED;
@@ -149,7 +149,22 @@ PetscErrorCode EqmJudgeEnd(EqmSolver solver, EqmStep outcome)
   solver->status = converged ? EQM_STATUS_CONVERGED : EQM_STATUS_NOT_CONVERGED;
   PetscCall(PetscStrncpy(solver->message, solver->method->message[0] ? solver->method->message : usual,
                          sizeof(solver->message)));
-  if (converged) PetscCall(RejectPoorMap(solver));
+  if (converged) RejectPoorMap(solver);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmJudgePoor(EqmSolver solver)
+{
+  const EqmImageTotals *const totals = &solver->iterate->totals;
+  const char *const measures = solver->mesh->cell_size == 3 ? "areas" : "volumes";
+
+  PetscFunctionBegin;
+  solver->poor = (PetscBool)(solver->status == EQM_STATUS_NOT_CONVERGED && IsPoor(solver));
+  if (!solver->poor) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(solver->message + strlen(solver->message), sizeof(solver->message) - strlen(solver->message),
+                          "; the map is poor, far from equal %s: ratios are off by %.2g, root mean square (the target "
+                          "may not suit the mesh: corners, slivers, thin limbs?)",
+                          measures, (double)PetscSqrtReal(totals->energy / totals->total)));
   PetscFunctionReturn(0);
 }
 

@@ -8,6 +8,8 @@
 PETSC_INTERN PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop);
 /* Set status and message when the method has no further step; the method's own message, if any, is used. Collective. */
 PETSC_INTERN PetscErrorCode EqmJudgeEnd(EqmSolver solver, EqmStep outcome);
+/* A map that has not converged and is of no use says so. Collective. */
+PETSC_INTERN PetscErrorCode EqmJudgePoor(EqmSolver solver);
 /* A map with folds is no success, wherever they are. Collective. */
 PETSC_INTERN PetscErrorCode EqmJudgeFolds(EqmSolver solver);
 

@@ -133,7 +133,12 @@ static PetscErrorCode Check(MPI_Comm comm, EqmMesh mesh, const EqmNormaliseSetti
   if (num > 1) EqmFail(comm, EQM_ERR_USAGE, "-fix, -align and -moebius area exclude each other");
   if (set->has_fix && num_fix != 3) EqmFail(comm, EQM_ERR_USAGE, "-fix: give three vertices, i,j,k");
   if (num_coordinates != 9) EqmFail(comm, EQM_ERR_USAGE, "-fix_points: give nine numbers, three points");
-  if (set->has_fix) PetscCall(CheckFix(comm, mesh, set));
+  if (set->has_fix) {
+    PetscReal points[9];
+    PetscCall(PetscArraycpy(points, set->fix_points, 9));
+    PetscCall(Normalise(comm, "-fix_points", 3, points));
+    PetscCall(CheckFix(comm, mesh, set));
+  }
   if (!mesh || num == 0) PetscFunctionReturn(0);
   if (mesh->num_boundary_vertices > 0)
     EqmFail(comm, EQM_ERR_USAGE, "-fix, -align and -moebius are for maps of closed surfaces");

@@ -48,6 +48,7 @@ struct _p_EqmSolver {
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
   PetscInt begun_again; /* the row of the history at which the iterations began once more after a collapse; 0: never */
+  PetscBool poor;       /* not converged, and far from equal areas */
   PetscBool collapsed;  /* the iterations ended at no map of the solid to the ball (mend.c) */
   PetscBool limited;    /* the iterations ended by a limit of the user's, not by themselves */
   EqmCheckpoints checkpoints;

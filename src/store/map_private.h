@@ -46,6 +46,7 @@ struct _p_EqmMap {
   PetscInt iterations, num_history;
   EqmHistoryRow *history; /* num_history rows, the same on every rank */
   EqmStatus status;
+  PetscBool poor;                /* not converged, and far from equal areas */
   char message[EQM_MESSAGE_MAX]; /* how the run ended, in words */
   char command[64], method[64];
   char linear_solver[EQM_LINEAR_TEXT]; /* what solved with matrices, and what it took */

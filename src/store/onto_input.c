@@ -64,6 +64,7 @@ static PetscErrorCode CopyRun(EqmMap from, EqmMap to)
   PetscCall(PetscMalloc1(from->num_history, &to->history));
   PetscCall(PetscArraycpy(to->history, from->history, from->num_history));
   PetscCall(EqmMapSetStatus(to, from->status, from->message));
+  to->poor = from->poor;
   PetscCall(EqmMapSetCommand(to, from->command));
   PetscCall(PetscStrncpy(to->method, from->method, sizeof(to->method)));
   PetscCall(PetscStrncpy(to->linear_solver, from->linear_solver, sizeof(to->linear_solver)));

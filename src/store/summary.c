@@ -46,6 +46,7 @@ static void AddRun(cJSON *root, EqmMap map)
   AddText(root, "status", EqmStatusName(map->status));
   AddCount(root, "exit_code", (PetscInt64)map->status);
   AddText(root, "message", map->message);
+  (void)cJSON_AddBoolToObject(root, "poor", map->poor);
   mesh = cJSON_AddObjectToObject(root, "mesh");
   AddText(mesh, "file", map->soup->file);
   AddCount(mesh, "vertices", map->soup->num_vertices);
