@@ -65,6 +65,7 @@ static PetscBool IsDisappointing(EqmSolver solver)
 
   if (solver->status == EQM_STATUS_STOPPED || solver->limited) return PETSC_FALSE;
   if (totals->folds > 0) return PETSC_TRUE;
+  if (solver->problem->terms) return PETSC_FALSE; /* equal ratios are not all that is wanted */
   return (PetscBool)(solver->problem->objective->poor_energy > 0. && totals->energy > fair_energy * totals->total);
 }
 

@@ -92,7 +92,6 @@ static PetscErrorCode End(EqmSolver solver)
   if (solver->formulation->finish) PetscCall(solver->formulation->finish(solver));
   PetscCall(EqmSolverMend(solver));
   if (solver->status != EQM_STATUS_STOPPED) PetscCall(EqmJudgeFolds(solver));
-  PetscCall(EqmJudgePoor(solver));
   PetscFunctionReturn(0);
 }
 

@@ -159,6 +159,7 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
   if (!blocked) PetscCall(EqmSolverRun(solver));
   PetscCall(EqmSolverTryOtherStarts(solver));
   if (blocked && solver->iterate->totals.folds > 0) PetscCall(EqmSolverRun(solver)); /* which says so */
+  PetscCall(EqmJudgePoor(solver));
   PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_END, solver->message));
   PetscCall(EqmSolverStraighten(solver));
   PetscFunctionReturn(0);

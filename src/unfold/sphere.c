@@ -153,7 +153,7 @@ static PetscErrorCode StraightenCap(EqmProblem problem, EqmIterate iterate, Unfo
 {
   const EqmMesh mesh = problem->mesh;
   PetscReal axis[3] = {0., 0., 0.}, b1[3], b2[3], length, *const x = iterate->place.x;
-  PetscInt smallest = 0;
+  PetscInt smallest = 0, rim = 0;
 
   PetscFunctionBegin;
   for (PetscInt k = 1; k < 3; k++) smallest = PetscAbsReal(center[k]) < PetscAbsReal(center[smallest]) ? k : smallest;
@@ -168,6 +168,9 @@ static PetscErrorCode StraightenCap(EqmProblem problem, EqmIterate iterate, Unfo
     u->z[2 * v + 1] = EqmDot3(x + 3 * v, b2) / scale;
     u->cap[v] = (PetscBool)(PetscSqr(u->z[2 * v]) + PetscSqr(u->z[2 * v + 1]) < r * r);
   }
+  for (PetscInt v = 0; v < mesh->num_owned; v++) rim += !u->cap[v];
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &rim, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  if (rim < 3) PetscFunctionReturn(0); /* nothing would hold the cap: so small a mesh is all cap */
   PetscCall(SolveCap(u));
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     const PetscReal p = u->z[2 * v], q = u->z[2 * v + 1], squared = p * p + q * q;
