@@ -2,6 +2,7 @@
 #include "solver/solver_private.h"
 #include "domain/domain_private.h"
 #include "solver/inner.h"
+#include "solver/judge.h"
 #include <string.h>
 
 PetscErrorCode EqmSolverCreate(EqmMesh mesh, const char *target, EqmSolver *out)
