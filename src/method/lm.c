@@ -6,16 +6,16 @@
 
    One iteration: the coupled Gauss-Newton matrix plus mu M, where M is an elastic metric weighted by the present
    residual (stiff where the map is wrong, loose where it is right), is factored once and solved three times: for the
-   step, for the mean's rank-one term, for the bend of the geodesic. Then the factor serves as the initial inverse
-   Hessian of quasi-Newton steps for as long as these pay. */
+   step, for the mean's rank-one term, for the second-order correction of the path. Then the factor serves as the
+   initial inverse Hessian of quasi-Newton steps for as long as these pay. */
 #include "method/lm.h"
 #include "domain/domain_private.h"
 #include <math.h>
 #include <string.h>
 
 enum { MOST_DAMPINGS = 8, MEMORY = 10 };
-/* Weighted by the residual, the metric fades by itself; below this its near-null directions would carry rounding, not
- * news. */
+/* Weighted by the residual, the metric vanishes with it; with less damping than this its near-null directions would
+   carry rounding errors only. */
 static const PetscReal least_damping = 1e-2;
 /* Of steps by iteration: in the energy norm, which is the model's. Smaller ones gain nothing. */
 static const PetscReal inexact = 1e-2;
@@ -161,7 +161,7 @@ static PetscErrorCode MakeRoom(EqmMethod method)
   PetscCall(TrialCreate(method, &lm->now));
   PetscCall(TrialCreate(method, &lm->best));
   PetscCall(TrialCreate(method, &lm->attempt));
-  PetscCall(PetscMalloc3(num_cells, &lm->rate, num_cells, &lm->bend, num_cells, &lm->slope));
+  PetscCall(PetscMalloc3(num_cells, &lm->rho_first, num_cells, &lm->rho_second, num_cells, &lm->slope));
   PetscCall(PetscMalloc3(dim * mesh->num_local, &lm->velocity, dim * mesh->num_local, &lm->acceleration,
                          dim * mesh->num_owned, &lm->ambient));
   PetscCall(EqmDomainCreateVec(method->problem->domain, &lm->descent));
@@ -261,7 +261,7 @@ static PetscErrorCode Reset(EqmMethod method)
   PetscCall(TrialDestroy(&lm->now));
   PetscCall(TrialDestroy(&lm->best));
   PetscCall(TrialDestroy(&lm->attempt));
-  PetscCall(PetscFree3(lm->rate, lm->bend, lm->slope));
+  PetscCall(PetscFree3(lm->rho_first, lm->rho_second, lm->slope));
   PetscCall(PetscFree3(lm->velocity, lm->acceleration, lm->ambient));
   PetscCall(VecDestroy(&lm->descent));
   PetscCall(VecDestroy(&lm->mean));

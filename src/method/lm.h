@@ -1,4 +1,4 @@
-/* The parts of Levenberg-Marquardt on log ratios; what it does is told in lm.c. */
+/* The parts of Levenberg-Marquardt on residuals of ratios; lm.c describes the method. */
 #ifndef EQM_LM_H
 #define EQM_LM_H
 
@@ -25,8 +25,8 @@ typedef struct {
   PetscReal kappa;
   PetscReal level; /* log A of the residual, held during an iteration; 0 where the mean is removed */
   EqmTrial now, best, attempt;
-  PetscReal *slope;       /* per local cell: d rho / d a */
-  PetscReal *rate, *bend; /* per local cell: first and second derivative of rho along the step */
+  PetscReal *slope;                  /* per local cell: d rho / d a */
+  PetscReal *rho_first, *rho_second; /* per local cell: first and second derivative of rho along the step */
   PetscReal *velocity, *acceleration, *ambient;
   Vec descent, mean, step, curve, move; /* -b, g, d, d2, t d + t^2 d2 */
   Vec solved_mean;                      /* y = H^-1 g */

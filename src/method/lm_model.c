@@ -1,4 +1,4 @@
-/* The Gauss-Newton model at the present map: matrix, right-hand sides, step and bend. */
+/* The Gauss-Newton model at the present map: matrix, right-hand sides, step and second-order correction. */
 #include "method/lm.h"
 #include "domain/domain_private.h"
 #include "energy/cellframe.h"
@@ -122,7 +122,7 @@ PetscErrorCode EqmLmSolveForStep(EqmMethod method, PetscBool *success)
   PetscFunctionReturn(0);
 }
 
-/* First and second derivative of the residual along the geodesic of the step, into rate and bend. */
+/* First and second derivative of the residual along the geodesic of the step, into rho_first and rho_second. */
 static PetscErrorCode DifferentiateAlongStep(EqmMethod method)
 {
   EqmLm *const lm = method->data;
@@ -132,17 +132,17 @@ static PetscErrorCode DifferentiateAlongStep(EqmMethod method)
   PetscFunctionBegin;
   PetscCall(EqmDomainExpand(domain, &lm->now.place, lm->step, lm->velocity));
   PetscCall(EqmDomainCurvature(domain, &lm->now.place, lm->velocity, lm->acceleration));
-  PetscCall(EqmImageDerivatives(domain, &lm->now.place, lm->velocity, lm->acceleration, lm->rate, lm->bend));
+  PetscCall(EqmImageDerivatives(domain, &lm->now.place, lm->velocity, lm->acceleration, lm->rho_first, lm->rho_second));
 #pragma omp parallel for schedule(static)
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) {
     PetscReal rho, first, second;
-    const PetscReal log_rate = lm->rate[c] / lm->now.image[c],
-                    log_bend = lm->bend[c] / lm->now.image[c] - log_rate * log_rate;
+    const PetscReal log_first = lm->rho_first[c] / lm->now.image[c],
+                    log_second = lm->rho_second[c] / lm->now.image[c] - log_first * log_first;
     lm->residual->at(PetscLogReal(lm->now.image[c] / mesh->weight[c]) - lm->level, &rho, &first, &second);
-    lm->rate[c] = first * log_rate;
-    lm->bend[c] = first * log_bend + second * log_rate * log_rate;
+    lm->rho_first[c] = first * log_first;
+    lm->rho_second[c] = first * log_second + second * log_first * log_first;
   }
-  if (lm->residual->without_mean) PetscCall(EqmRemoveWeightedMean(mesh, lm->bend));
+  if (lm->residual->without_mean) PetscCall(EqmRemoveWeightedMean(mesh, lm->rho_second));
   PetscFunctionReturn(0);
 }
 
@@ -157,7 +157,7 @@ PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio)
 
   PetscFunctionBegin;
   PetscCall(DifferentiateAlongStep(method));
-  PetscCall(PullBack(method, lm->bend, lm->curve));
+  PetscCall(PullBack(method, lm->rho_second, lm->curve));
   PetscCall(EqmTermsAddCurve(problem, &lm->now.place, lm->now.image, lm->velocity, lm->acceleration, lm->term_scale,
                              lm->curve));
   PetscCall(EqmLmApplyInverse(method, lm->curve));

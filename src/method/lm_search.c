@@ -13,15 +13,15 @@ void EqmLmSwap(EqmTrial *a, EqmTrial *b)
   *b = t;
 }
 
-/* Look at the map at parameter t, with or without the bend; keep it if it is the best so far. */
-static PetscErrorCode TryAt(EqmMethod method, PetscReal t, PetscBool bent, PetscReal *best_t, PetscReal *objective)
+/* Evaluate the map at parameter t, with or without the second-order correction; keep it if it is the best so far. */
+static PetscErrorCode TryAt(EqmMethod method, PetscReal t, PetscBool curved, PetscReal *best_t, PetscReal *objective)
 {
   EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
   PetscCall(VecCopy(lm->step, lm->move));
   PetscCall(VecScale(lm->move, t));
-  if (bent) PetscCall(VecAXPY(lm->move, t * t, lm->curve));
+  if (curved) PetscCall(VecAXPY(lm->move, t * t, lm->curve));
   PetscCall(EqmDomainMove(method->problem->domain, &lm->now.place, 1., lm->move, &lm->attempt.place));
   PetscCall(EqmLmEvaluate(method, &lm->attempt));
   *objective = lm->attempt.objective;

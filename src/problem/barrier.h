@@ -1,4 +1,4 @@
-/* A barrier against folds of maps to the ball that maps with folds can cross: what it is is told in barrier.c. */
+/* A barrier against folds of maps to the ball that maps with folds can cross: barrier.c defines it. */
 #ifndef EQM_BARRIER_H
 #define EQM_BARRIER_H
 

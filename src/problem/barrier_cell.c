@@ -10,15 +10,15 @@ EqmBarrierTerm EqmBarrierOfCell(EqmBarrier barrier, PetscReal ratio, PetscReal s
   const PetscReal chi = ratio > 0. ? .5 * (ratio + root) : .5 * eps * eps / (root - ratio);
   const PetscReal first = chi / root, second = .5 * eps * eps / (root * root * root), half = .5 * (1. + ratio * ratio);
   const PetscReal power = PetscPowReal(chi, -2. / 3.), shape = barrier->shape_weight * power / 3.;
-  const PetscReal relative = first / chi, bend = second / chi;
+  const PetscReal relative = first / chi, relative_second = second / chi;
 
-  return (
-      EqmBarrierTerm){.value = barrier->weight * half / chi + shape * stretch,
-                      .first = barrier->weight * (ratio - half * relative) / chi - 2. / 3. * shape * stretch * relative,
-                      .second = barrier->weight *
-                                    (1. - 2. * ratio * relative - half * bend + 2. * half * relative * relative) / chi +
-                                shape * stretch * (10. / 9. * relative * relative - 2. / 3. * bend),
-                      .by_stretch = shape};
+  return (EqmBarrierTerm){
+      .value = barrier->weight * half / chi + shape * stretch,
+      .first = barrier->weight * (ratio - half * relative) / chi - 2. / 3. * shape * stretch * relative,
+      .second = barrier->weight *
+                    (1. - 2. * ratio * relative - half * relative_second + 2. * half * relative * relative) / chi +
+                shape * stretch * (10. / 9. * relative * relative - 2. / 3. * relative_second),
+      .by_stretch = shape};
 }
 
 PetscReal EqmBarrierStretch(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt cell)

@@ -1,4 +1,4 @@
-/* Vertices that are drawn towards given places: lambda sum |x(v_i) - q_i|^2 beside the energy (000 (46), 001
+/* Landmarks, vertices with target positions: lambda sum |x(v_i) - q_i|^2 beside the energy (000 (46), 001
  * section 6.6). */
 #ifndef EQM_LANDMARKS_H
 #define EQM_LANDMARKS_H

@@ -24,7 +24,7 @@ struct _p_EqmTerm {
      degrees of freedom. NULL: rho is linear in the places, or rho'' is neglected. Collective. */
   PetscErrorCode (*add_curve)(EqmTerm, EqmProblem, const EqmPlace *place, const PetscReal *image,
                               const PetscReal *velocity, const PetscReal *acceleration, PetscReal factor, Vec result);
-  PetscErrorCode (*destroy)(EqmTerm); /* free the structure; NULL: somebody else does */
+  PetscErrorCode (*destroy)(EqmTerm); /* free the structure; NULL: the structure belongs to the caller */
   EqmTerm next;
 };
 

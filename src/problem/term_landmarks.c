@@ -1,4 +1,4 @@
-/* Vertices that are drawn to places: sum |x(v_i) - q_i|^2 (000 (46), 001 section 6.6). */
+/* Landmarks, vertices with target positions: sum |x(v_i) - q_i|^2 (000 (46), 001 section 6.6). */
 #include "problem/term.h"
 #include "domain/domain_private.h"
 #include "geometry/simplex.h"

@@ -206,7 +206,8 @@ static PetscErrorCode TestMatrix(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-/* Without terms the model promises sum w rho^2 less that of the linearised residual; lm->rate is that of the step. */
+/* Without terms the model promises sum w rho^2 less that of the linearised residual; lm->rho_first is that of the step.
+ */
 static PetscErrorCode TestPrediction(EqmSolver solver)
 {
   EqmLm *const lm = solver->method->data;
@@ -216,29 +217,29 @@ static PetscErrorCode TestPrediction(EqmSolver solver)
   PetscCall(EqmLmPredictedDecrease(solver->method, &predicted));
   CHECK(predicted > 0., "the model promises a decrease of %g", (double)predicted);
   if (solver->problem->terms) PetscFunctionReturn(0);
-  for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) lm->rate[c] += lm->now.residual[c];
-  if (lm->residual->without_mean) PetscCall(EqmRemoveWeightedMean(solver->mesh, lm->rate));
-  PetscCall(EqmWeightedSum(solver->mesh, lm->rate, 2, &squares));
+  for (PetscInt c = 0; c < solver->mesh->num_local_cells; c++) lm->rho_first[c] += lm->now.residual[c];
+  if (lm->residual->without_mean) PetscCall(EqmRemoveWeightedMean(solver->mesh, lm->rho_first));
+  PetscCall(EqmWeightedSum(solver->mesh, lm->rho_first, 2, &squares));
   CHECK_CLOSE(predicted, lm->now.squares - squares, 1e-9, lm->now.squares);
   PetscFunctionReturn(0);
 }
 
-/* The bend is the residuals' second derivative along the geodesic of the step. */
-static PetscErrorCode TestBend(EqmSolver solver)
+/* Second derivatives of the residuals along the geodesic of the step. */
+static PetscErrorCode TestSecondDerivative(EqmSolver solver)
 {
   EqmLm *const lm = solver->method->data;
   const EqmMesh mesh = solver->mesh;
   const PetscInt m = mesh->num_local_cells;
-  PetscReal *residual, *bend, objective[5], ratio, length, scale, largest = 0.;
+  PetscReal *residual, *second, objective[5], ratio, length, scale, largest = 0.;
   PetscBool success;
   Vec step;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(5 * m, &residual, m, &bend));
+  PetscCall(PetscMalloc2(5 * m, &residual, m, &second));
   PetscCall(EqmLmFactor(solver->method, &success));
   PetscCall(EqmLmSolveForStep(solver->method, &success));
   PetscCall(EqmLmSolveForCurve(solver->method, &ratio));
-  PetscCall(PetscArraycpy(bend, lm->bend, m));
+  PetscCall(PetscArraycpy(second, lm->rho_second, m));
   PetscCall(TestPrediction(solver));
   PetscCall(VecDuplicate(lm->step, &step));
   PetscCall(VecCopy(lm->step, step));
@@ -246,16 +247,16 @@ static PetscErrorCode TestBend(EqmSolver solver)
   PetscCall(VecNorm(lm->step, NORM_2, &length));
   PetscCall(VecNorm(step, NORM_2, &scale));
   PetscCall(Sample(solver, step, 1e-2, residual, objective));
-  for (PetscInt c = 0; c < m; c++) largest = PetscMax(largest, PetscAbsReal(bend[c]));
+  for (PetscInt c = 0; c < m; c++) largest = PetscMax(largest, PetscAbsReal(second[c]));
   largest = TestMax(mesh->comm, largest);
-  CHECK(largest > 0. && ratio > 0., "no bend at all");
+  CHECK(largest > 0. && ratio > 0., "no second derivative");
   for (PetscInt c = 0; c < m; c++) { /* at ratio one the mixed residual has a kink: leave out what crosses it */
     const PetscReal *const f = residual + c;
     if (!lm->residual->without_mean && (f[0] > 0.) != (f[4 * m] > 0.)) continue;
-    CHECK_CLOSE(SecondDifference(m, f, 1e-2) * PetscSqr(length / scale), bend[c], 1e-4, largest);
+    CHECK_CLOSE(SecondDifference(m, f, 1e-2) * PetscSqr(length / scale), second[c], 1e-4, largest);
   }
   PetscCall(VecDestroy(&step));
-  PetscCall(PetscFree2(residual, bend));
+  PetscCall(PetscFree2(residual, second));
   PetscFunctionReturn(0);
 }
 
@@ -315,7 +316,7 @@ static PetscErrorCode TestTarget(const char *shape, const char *target, const ch
   PetscCall(Begin(test.mesh, target, options, landmarks, &solver));
   PetscCall(TestGradient(solver));
   PetscCall(TestMatrix(solver));
-  PetscCall(TestBend(solver));
+  PetscCall(TestSecondDerivative(solver));
   PetscCall(End(&solver));
   PetscCall(TestMeshDestroy(&test));
   PetscFunctionReturn(0);
