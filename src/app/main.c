@@ -189,7 +189,10 @@ int main(int argc, char **argv)
   int num_options;
   char **options;
 
-  if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return EQM_STATUS_INTERNAL;
+  if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) {
+    if (rank == 0) (void)fputs("equimap: out of memory at the very beginning\n", stderr);
+    return EQM_STATUS_INTERNAL;
+  }
   if (line.version || !line.command) return EqmIntroduce(&line, rank);
   WaitPassively(argv);
   if (!launched) StartWithoutDaemon();

@@ -1,7 +1,7 @@
 #define _GNU_SOURCE
-#include "atomicfile.h"
+#include "base/atomicfile.h"
+#include "base/temporaries.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
@@ -38,7 +38,10 @@ static int CreateTemporary(EqmAtomicFile *file, int *descriptor)
 
     if (used < 0 || (size_t)used >= sizeof(file->temporary)) return ENAMETOOLONG;
     *descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (*descriptor >= 0) return 0;
+    if (*descriptor >= 0) {
+      EqmNoteTemporary(file->temporary);
+      return 0;
+    }
     if (errno != EEXIST) return errno;
   }
   return EEXIST;
@@ -220,7 +223,10 @@ PetscErrorCode EqmAtomicCommit(EqmAtomicFile *file, char *error, size_t length)
 
   Join(file);
   error_number = begun ? file->error_number : FlushAndRename(file);
-  if (!error_number) return 0;
+  if (!error_number) {
+    EqmForgetTemporary(file->temporary);
+    return 0;
+  }
   EqmAtomicAbort(file);
   return RejectWrite(file->path, error_number, error, length);
 }
@@ -233,41 +239,6 @@ void EqmAtomicAbort(EqmAtomicFile *file)
   if (file->stream) fclose(file->stream);
   file->stream = NULL;
   if (file->temporary[0] && strcmp(file->path, file->temporary)) unlink(file->temporary);
+  EqmForgetTemporary(file->temporary);
   file->temporary[0] = '\0';
-}
-
-/* Is this the name of a temporary of `base`, base.NUMBER-NUMBER.tmp? */
-static PetscBool IsTemporaryOf(const char *base, const char *name)
-{
-  const size_t length = strlen(base);
-  const char *end = name + length;
-
-  if (strncmp(name, base, length) || *end != '.') return PETSC_FALSE;
-  end += 1 + strspn(end + 1, "0123456789");
-  if (*end != '-') return PETSC_FALSE;
-  end += 1 + strspn(end + 1, "0123456789");
-  return strcmp(end, ".tmp") ? PETSC_FALSE : PETSC_TRUE;
-}
-
-/* EqmAtomicSweep - remove the temporaries of `path` that killed runs have left behind. Only for a file that no other
-   run writes at the same time. Not collective. */
-void EqmAtomicSweep(const char *path)
-{
-  char copy[PETSC_MAX_PATH_LEN], name[PETSC_MAX_PATH_LEN], leftover[2 * PETSC_MAX_PATH_LEN];
-  const char *base, *folder;
-  DIR *directory;
-
-  if (strlen(path) >= sizeof(copy)) return;
-  strcpy(copy, path);
-  strcpy(name, path);
-  base = basename(name);
-  folder = dirname(copy);
-  directory = opendir(folder);
-  if (!directory) return;
-  for (const struct dirent *entry = readdir(directory); entry; entry = readdir(directory)) {
-    if (!IsTemporaryOf(base, entry->d_name)) continue;
-    (void)snprintf(leftover, sizeof(leftover), "%s/%s", folder, entry->d_name);
-    (void)unlink(leftover);
-  }
-  (void)closedir(directory);
 }

@@ -39,6 +39,7 @@ PETSC_INTERN void EqmAtomicCommitBegin(EqmAtomicFile *file);
 PETSC_INTERN PetscErrorCode EqmAtomicCommit(EqmAtomicFile *file, char *error, size_t length);
 PETSC_INTERN void EqmAtomicAbort(EqmAtomicFile *file);
 PETSC_INTERN void EqmAtomicSweep(const char *path);
+PETSC_INTERN void EqmAtomicAbandonAll(void);
 
 /* Prints a file's contents; where memory runs out, sets error_number. */
 typedef void (*EqmAtomicPrinter)(EqmAtomicFile *file, void *context);

@@ -5,7 +5,7 @@
 #include <equimap/base.h>
 
 /* An error handler that prints nothing and keeps the message, for PetscPushErrorHandler around a call that may fail;
-   `context` is a char[EQM_MESSAGE_MAX]. */
+   `context` is a char[EQM_MESSAGE_MAX]. A rank that runs out of memory ends all nevertheless: the others wait. */
 PETSC_INTERN PetscErrorCode EqmKeepMessage(MPI_Comm comm, int line, const char *function, const char *file,
                                            PetscErrorCode code, PetscErrorType type, const char *message,
                                            void *context);

@@ -1,5 +1,8 @@
 /* Status codes, the error handler, agreement on failures. */
 #include <equimap/base.h>
+#include "base/atomicfile.h"
+#include "base/fatal.h"
+#include "base/stop.h"
 #include <signal.h>
 #include <string.h>
 
@@ -70,11 +73,12 @@ PetscErrorCode EqmAgree(MPI_Comm comm, PetscErrorCode code, const char *message)
   EqmFail(comm, (PetscErrorCode)shared, "%s", text);
 }
 
-/* A user's mistake deserves a sentence, once, not a stack of calls from every rank; a bug keeps PETSc's full trace and
-   ends all ranks, for the others may be waiting. */
+/* A user's mistake deserves a sentence, once, not a stack of calls from every rank, and so does memory that is not
+   there; a bug keeps PETSc's full trace. Either of these two ends all ranks, for the others may be waiting. */
 static PetscErrorCode HandleError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                   PetscErrorType type, const char *message, void *context)
 {
+  if (EqmIsOutOfMemory(function, code, type)) return EqmFailForMemory(comm, code, type, message);
   if (EqmStatusOfError(code) != EQM_STATUS_INTERNAL) {
     PetscMPIInt rank = 0;
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
@@ -89,15 +93,16 @@ static PetscErrorCode HandleError(MPI_Comm comm, int line, const char *function,
     return EQM_ERR_USAGE;
   }
   PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, context);
-  MPI_Abort(PETSC_COMM_WORLD, EQM_STATUS_INTERNAL);
-  return code;
+  EqmEndAllRanks();
 }
 
 PetscErrorCode EqmInitialize(int *argc, char ***argv)
 {
   PetscFunctionBegin;
+  PetscCall(PetscPushErrorHandler(HandleError, NULL)); /* what fails in the next line deserves a sentence, too */
   PetscCall(PetscInitialize(argc, argv, NULL, NULL));
-  PetscCall(PetscPushErrorHandler(HandleError, NULL));
+  EqmStopRemoveTemporaries();
+  PetscCall(EqmWatchEnds());
   signal(SIGXFSZ, SIG_IGN); /* a file size limit is a write that fails, with a message, not a death */
   PetscFunctionReturn(0);
 }
@@ -105,6 +110,8 @@ PetscErrorCode EqmInitialize(int *argc, char ***argv)
 PetscErrorCode EqmFinalize(void)
 {
   PetscFunctionBegin;
+  EqmForgetEnds();
+  EqmAtomicAbandonAll(); /* of functions that have failed */
   PetscCall(PetscPopErrorHandler());
   PetscCall(PetscFinalize());
   return 0;

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE
 #include "base/stop.h"
+#include "base/atomicfile.h"
 #include <libgen.h>
 #include <signal.h>
 #include <string.h>
@@ -7,6 +8,25 @@
 
 /* Global by nature: a process has one set of signals. */
 static volatile sig_atomic_t caught = EQM_STOP_NONE;
+
+static void RemoveAndEnd(int signal_number)
+{
+  EqmAtomicAbandonAll();
+  (void)signal(signal_number, SIG_DFL);
+  (void)raise(signal_number);
+}
+
+void EqmStopRemoveTemporaries(void)
+{
+  static const int signals[] = {SIGTERM, SIGINT, SIGHUP};
+
+  for (size_t k = 0; k < sizeof(signals) / sizeof(signals[0]); k++) {
+    struct sigaction before;
+
+    if (!sigaction(signals[k], NULL, &before) && before.sa_handler == SIG_IGN) continue; /* nohup */
+    (void)signal(signals[k], RemoveAndEnd);
+  }
+}
 
 static void Note(int signal_number)
 {

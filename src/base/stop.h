@@ -7,6 +7,10 @@
 /* Where a request came from; the larger number is told where there are several. */
 typedef enum { EQM_STOP_NONE, EQM_STOP_USR1, EQM_STOP_TERM, EQM_STOP_FILE } EqmStopReason;
 
+/* From here on SIGTERM, SIGINT and SIGHUP end this process as they always do, without PETSc's trace, and no temporary
+   file stays behind. Not collective. */
+PETSC_INTERN void EqmStopRemoveTemporaries(void);
+
 /* From here on SIGUSR1 and SIGTERM are noted on every rank instead of ending the processes. Collective. */
 PETSC_INTERN PetscErrorCode EqmStopCatchSignals(MPI_Comm comm);
 

@@ -13,6 +13,7 @@ static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, 
   EqmH5 h5;
 
   PetscFunctionBegin;
+  (void)H5dont_atexit(); /* its cleaning up crashes where it has run out of memory; all files are closed by us */
   PetscCall(PetscNew(&h5));
   h5->comm = comm;
   h5->file = h5->transfer = H5I_INVALID_HID;

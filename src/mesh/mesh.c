@@ -1,6 +1,7 @@
 /* The distributed mesh: made from a soup, destroyed, its ghosts refreshed. */
 #include "mesh/build.h"
 #include "mesh/mesh_private.h"
+#include "base/fatal.h"
 #include "base/rows.h"
 #include "geometry/simplex.h"
 
@@ -229,6 +230,7 @@ PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *out)
   EqmStars stars;
 
   PetscFunctionBegin;
+  PetscCall(EqmReserveForBlas()); /* before the mesh takes the memory */
   PetscCall(PetscNew(&mesh));
   mesh->comm = soup->comm;
   mesh->ledger = ledger;

@@ -39,6 +39,14 @@ static PetscErrorCode CheckGraph(PetscInt n, PetscInt num_neighbors)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CheckResult(int result, const char *function)
+{
+  PetscFunctionBegin;
+  PetscCheck(result != METIS_ERROR_MEMORY, PETSC_COMM_SELF, PETSC_ERR_MEM, "%s", function);
+  PetscCheck(result == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s failed with code %d", function, result);
+  PetscFunctionReturn(0);
+}
+
 /* Cut a graph into parts of equal size with few edges between them. Not collective. */
 PetscErrorCode EqmRunMetis(PetscInt num_parts, PetscInt n, PetscInt *start, PetscInt *neighbor, PetscInt *part)
 {
@@ -56,7 +64,7 @@ PetscErrorCode EqmRunMetis(PetscInt num_parts, PetscInt n, PetscInt *start, Pets
   PetscCall(ToMetis(n, PETSC_FALSE, part, &found));
   result = METIS_PartGraphKway(&num_rows, &num_constraints, from, adjacent, NULL, NULL, NULL, &parts, NULL, NULL, NULL,
                                &cut, found);
-  PetscCheck(result == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_PartGraphKway failed with code %d", result);
+  PetscCall(CheckResult(result, "METIS_PartGraphKway"));
   PetscCall(FromMetis(n, PETSC_TRUE, part, &found));
   PetscCall(FromMetis(start[n], PETSC_FALSE, neighbor, &adjacent));
   PetscCall(FromMetis(n + 1, PETSC_FALSE, start, &from));
@@ -87,7 +95,7 @@ PetscErrorCode EqmDissect(PetscInt n, PetscInt *degree_then_start, PetscInt *nei
   PetscCall(ToMetis(n, PETSC_FALSE, order, &permutation));
   PetscCall(PetscMalloc1(n, &inverse));
   result = METIS_NodeND(&num_rows, start, adjacent, NULL, NULL, permutation, inverse);
-  PetscCheck(result == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_NodeND failed with code %d", result);
+  PetscCall(CheckResult(result, "METIS_NodeND"));
   PetscCall(PetscFree(inverse));
   PetscCall(FromMetis(n, PETSC_TRUE, order, &permutation));
   PetscCall(FromMetis(sum, PETSC_FALSE, neighbor, &adjacent));

@@ -16,6 +16,7 @@ PetscErrorCode EqmCheckpointBegin(EqmSolver solver)
   PetscFunctionBegin;
   solver->checkpoints.written = -1;
   if (!file[0]) PetscFunctionReturn(0);
+  PetscCall(EqmLockTake(solver->comm, file, "-checkpoint", &solver->checkpoints.lock));
   if (solver->mesh->rank == 0) EqmAtomicSweep(file);
   if (!solver->checkpoints.stop_file.name[0])
     PetscCall(EqmStopWatchFile(solver->comm, file, &solver->checkpoints.stop_file));

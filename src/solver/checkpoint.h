@@ -3,6 +3,7 @@
 #define EQM_CHECKPOINT_H
 
 #include <equimap/solver.h>
+#include "base/lockfile.h"
 #include "base/stop.h"
 #include "store/state.h"
 
@@ -10,6 +11,7 @@
 typedef struct {
   EqmState open;                      /* the one that is being loaded, between map and method; else NULL */
   EqmState writing;                   /* the one that is being written; else NULL */
+  EqmLock lock;                       /* on the name of its file */
   EqmStopFile stop_file;              /* beside the checkpoint; of a run that has begun before, it has a name already */
   char kept_mesh[PETSC_MAX_PATH_LEN]; /* the run's copies of its meshes, likewise; empty: there is none */
   PetscReal cost, last;               /* seconds that the last checkpoint took, and the time at which it was written */

@@ -1,6 +1,7 @@
 /* What a checkpoint holds. */
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
+#include "base/checksum.h"
 #include "store/keptmesh.h"
 
 enum { HISTORY_COLUMNS = 10 };
@@ -62,6 +63,34 @@ static PetscErrorCode VisitHistory(EqmState state, EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
+/* The same landmarks, and the places that they had: computed anew, as those of a registration are, they would be others
+   by rounding. */
+static PetscErrorCode VisitLandmarks(EqmState state, EqmSolver solver)
+{
+  EqmLandmarks *const landmarks = &solver->problem->landmarks;
+  const PetscReal rounding = 1e-6;
+  const PetscInt count = landmarks->dim * landmarks->num_total;
+  PetscReal *places, largest = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStateSameInt(state, "the number of landmarks", landmarks->num_total));
+  PetscCall(EqmStateSameReal(state, "the landmarks' weight", landmarks->lambda));
+  if (landmarks->num_total == 0) PetscFunctionReturn(0);
+  PetscCall(EqmStateSameInt(state, "the checksum of the landmarks' vertices",
+                            EqmChecksumIntegers(landmarks->num_total, landmarks->input_vertex).crc));
+  PetscCall(PetscMalloc1(count, &places));
+  PetscCall(PetscArraycpy(places, landmarks->target, count));
+  PetscCall(EqmStateReals(state, "landmark_places", count, places));
+  for (PetscInt k = 0; k < count; k++) largest = PetscMax(largest, PetscAbsReal(places[k] - landmarks->target[k]));
+  if (largest <= rounding) PetscCall(PetscArraycpy(landmarks->target, places, count));
+  PetscCall(PetscFree(places));
+  if (!(largest <= rounding))
+    EqmFail(solver->comm, EQM_ERR_CHECKPOINT,
+            "the checkpoint's landmarks lie elsewhere, by up to %.3g in the target; begin anew, without -restart",
+            (double)largest);
+  PetscFunctionReturn(0);
+}
+
 /* Refuse the checkpoint of another problem. */
 static PetscErrorCode VisitProblem(EqmState state, EqmSolver solver)
 {
@@ -80,8 +109,7 @@ static PetscErrorCode VisitProblem(EqmState state, EqmSolver solver)
   PetscCall(EqmStateSameText(state, "method", solver->defaults.name));
   PetscCall(EqmStateSameReal(state, "-balance", PetscMax(set->balance, 0.)));
   PetscCall(EqmStateSameText(state, "-corners", corners));
-  PetscCall(EqmStateSameInt(state, "the number of landmarks", solver->problem->landmarks.num_total));
-  PetscCall(EqmStateSameReal(state, "the landmarks' weight", solver->problem->landmarks.lambda));
+  PetscCall(VisitLandmarks(state, solver));
   PetscFunctionReturn(0);
 }
 

@@ -34,6 +34,7 @@ PetscErrorCode EqmSolverDestroy(EqmSolver *solver)
   PetscCall(PetscFree(s->objectives));
   PetscCall(PetscFree(s->history));
   PetscCall(PetscFree(s->first_map));
+  EqmLockRelease(&s->checkpoints.lock);
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(0);
 }
