@@ -1,5 +1,6 @@
 /* Open, create, commit and abandon HDF5 files. */
 #include "h5/h5.h"
+#include "base/temporaries.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -8,12 +9,33 @@
 
 enum { RESERVED = 1 << 17 }; /* bytes of disk space */
 
+/* HDF5 may lose handles of a damaged file, and complains when it is closed, which MPI_Finalize does, unless its
+   messages are off. */
+static PetscErrorCode EndQuietly(void)
+{
+  (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  return 0;
+}
+
+/* Once per process. */
+static PetscErrorCode Prepare(void)
+{
+  static PetscBool is_done = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (is_done) PetscFunctionReturn(0);
+  is_done = PETSC_TRUE;
+  (void)H5dont_atexit(); /* its cleaning up crashes where it has run out of memory; all files are closed by us */
+  PetscCall(PetscRegisterFinalize(EndQuietly));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, EqmH5 *out)
 {
   EqmH5 h5;
 
   PetscFunctionBegin;
-  (void)H5dont_atexit(); /* its cleaning up crashes where it has run out of memory; all files are closed by us */
+  PetscCall(Prepare());
   PetscCall(PetscNew(&h5));
   h5->comm = comm;
   h5->file = h5->transfer = H5I_INVALID_HID;
@@ -43,6 +65,7 @@ static PetscBool End(EqmH5 *handle)
   ReleaseReserved(h5);
   if (h5->transfer >= 0 && H5Pclose(h5->transfer) < 0) fine = PETSC_FALSE;
   if (h5->file >= 0 && H5Fclose(h5->file) < 0) fine = PETSC_FALSE;
+  if (h5->rank > 0) EqmForgetTemporary(h5->atomic.temporary);
   if (h5->writing && h5->rank == 0) EqmAtomicAbort(&h5->atomic);
   (void)H5Eset_auto2(H5E_DEFAULT, h5->printer, h5->printer_data);
   (void)PetscFree(*handle);
@@ -133,6 +156,7 @@ static PetscErrorCode MakeTemporary(EqmH5 h5)
   }
   PetscCall(EqmAgree(h5->comm, error, message));
   PetscCallMPI(MPI_Bcast(h5->atomic.temporary, (PetscMPIInt)sizeof(h5->atomic.temporary), MPI_CHAR, 0, h5->comm));
+  if (h5->rank > 0) EqmNoteTemporary(h5->atomic.temporary); /* whoever ends all ranks removes it */
   PetscFunctionReturn(0);
 }
 
