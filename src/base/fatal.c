@@ -17,6 +17,8 @@ PetscBool EqmIsOutOfMemory(const char *function, PetscErrorCode code, PetscError
   return (PetscBool)(function && (!strcmp(function, "PetscMallocAlign") || !strcmp(function, "PetscReallocAlign")));
 }
 
+static PetscBool is_running = PETSC_FALSE; /* between EqmWatchEnds and EqmForgetEnds */
+
 /* The first errors may come before MPI has begun. */
 static void WhereAmI(MPI_Comm comm, int *rank, int *size)
 {
@@ -35,6 +37,7 @@ void EqmEndAllRanks(void)
 {
   int rank, size;
 
+  is_running = PETSC_FALSE;
   EqmAtomicAbandonAll();
   (void)fflush(stdout);
   WhereAmI(PETSC_COMM_WORLD, &rank, &size);
@@ -71,8 +74,6 @@ PetscErrorCode EqmFailForMemory(MPI_Comm comm, PetscErrorCode code, PetscErrorTy
   return code;
 }
 
-static PetscBool is_running = PETSC_FALSE;
-
 /* A library that has no memory may call exit by itself: HDF5 1.10 does. */
 static void ExitOfALibrary(void)
 {
@@ -80,9 +81,10 @@ static void ExitOfALibrary(void)
 
   if (!is_running) return;
   WhereAmI(PETSC_COMM_WORLD, &rank, &size);
-  (void)fprintf(stderr,
-                "equimap: a library has given up on rank %d, out of memory as it seems; use more ranks or nodes\n",
-                rank);
+  (void)fprintf(
+      stderr,
+      "equimap: a library has ended the program on rank %d, for want of memory as it seems; use more ranks or nodes\n",
+      rank);
   EqmEndAllRanks();
 }
 

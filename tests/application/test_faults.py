@@ -50,7 +50,7 @@ class Faults(Program):
         self.write("pairs.csv", "a,b\n3,3\n9,9\n")
         self.given = set(os.listdir(folder))
 
-    def fault(self, arguments, ranks=None, timeout=60, **fault):
+    def fault(self, arguments, ranks=None, timeout=180, **fault):
         """Run with a fault; what lay there from the run before is removed first."""
         self.clear()
         before = dict(self.environment)
