@@ -264,6 +264,7 @@ PetscErrorCode EqmSolverResolveSettings(EqmSolver solver)
   if (set->energy_rtol < 0.) set->energy_rtol = solver->defaults.energy_rtol;
   if (set->gradient_tol < 0.) set->gradient_tol = solver->defaults.gradient_tol;
   PetscCall(CheckObjective(solver));
+  if (!set->restart[0]) PetscCall(EqmStartRequireFile(solver->comm, set->start.name));
   PetscCall(EqmStartFind(solver->comm, formulation->starts, formulation->domain, set->start.name, &solver->start));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,7 @@
 /* The registry of starts, and their options. */
 #include "start/start.h"
 #include "base/nearest.h"
+#include <string.h>
 
 enum { MOST_STARTS = 64 };
 static const EqmStartType *starts[MOST_STARTS] = {
@@ -25,9 +26,12 @@ PetscErrorCode EqmStartRegister(const EqmStartType *type)
 PetscErrorCode EqmStartFind(MPI_Comm comm, EqmStartFamily family, const char *place, const char *name,
                             const EqmStartType **type)
 {
+  static const EqmStartType *const of_file[] = {&EqmStartFilePlane, &EqmStartFileSphere, &EqmStartFileBall};
   char names[EQM_MESSAGE_MAX], hint[128];
 
   PetscFunctionBegin;
+  *type = of_file[family];
+  if (EqmStartIsFile(name)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < MOST_STARTS && starts[k]; k++) {
     PetscBool same;
     PetscCall(PetscStrcmp(name, starts[k]->name, &same));
@@ -37,8 +41,8 @@ PetscErrorCode EqmStartFind(MPI_Comm comm, EqmStartFamily family, const char *pl
   }
   PetscCall(EqmStartNames(family, names, sizeof(names)));
   PetscCall(EqmDidYouMean(name, names, hint, sizeof(hint)));
-  EqmFail(comm, EQM_ERR_USAGE, "-start %s: there is no such start for the %s; choose one of %s%s", name, place, names,
-          hint);
+  EqmFail(comm, EQM_ERR_USAGE, "-start %s: there is no such start for the %s; choose one of %s, or a file%s", name,
+          place, names, hint);
 }
 
 PetscErrorCode EqmStartNames(EqmStartFamily family, char *text, size_t length)
@@ -63,10 +67,10 @@ PetscErrorCode EqmStartOptionsDefault(EqmStartOptions *options)
 PetscErrorCode EqmStartSetFromOptions(EqmStartFamily family, EqmStartOptions *options,
                                       PetscOptionItems *PetscOptionsObject)
 {
-  char text[EQM_MESSAGE_MAX] = "the first map: ";
+  char text[EQM_MESSAGE_MAX] = "the first map, a path or one of: ";
 
   PetscFunctionBegin;
-  PetscCall(EqmStartNames(family, text + 15, sizeof(text) - 15));
+  PetscCall(EqmStartNames(family, text + strlen(text), sizeof(text) - strlen(text)));
   PetscCall(PetscOptionsString("-start", text, "EqmSolverSetFromOptions", options->name, options->name,
                                sizeof(options->name), NULL));
   PetscCall(PetscOptionsInt("-start_steps", "fixed-point steps after the first map (-1: as the start has it)",

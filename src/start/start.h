@@ -15,7 +15,7 @@ typedef PetscErrorCode (*EqmMapSurface)(void *context, EqmMesh surface, PetscRea
 
 /* Settings of a start. */
 typedef struct {
-  char name[32];                 /* empty: the target's own for the method */
+  char name[PETSC_MAX_PATH_LEN]; /* of a start or a file; empty: the target's own for the method */
   PetscInt steps;                /* fixed-point steps after the first map; -1: the start's default */
   PetscBool center;              /* sphere: bring the mass centre to the sphere's by a Moebius map at the end */
   PetscBool anisotropic_scaling; /* ball: turn and scale the solid to fill a cube first (003 (11)) */
@@ -32,7 +32,12 @@ typedef struct {
 
 /* Register a start; `type` must outlive the program's use of it. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmStartRegister(const EqmStartType *type);
-/* The start of a name. `place` names the target in the error message. Errors: EQM_ERR_USAGE. Collective. */
+/* Is this the name of a file, not of a start? Not collective. */
+PETSC_INTERN PetscBool EqmStartIsFile(const char *name);
+/* If it is, the file must be there. Errors: EQM_ERR_IO. Collective. */
+PETSC_INTERN PetscErrorCode EqmStartRequireFile(MPI_Comm comm, const char *name);
+/* The start of a name, or for a file the start that reads it. `place` names the target in the error message. Errors:
+   EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmStartFind(MPI_Comm comm, EqmStartFamily family, const char *place, const char *name,
                                          const EqmStartType **type);
 /* The names of all starts of a family, separated by commas. Not collective. */
@@ -50,7 +55,7 @@ PETSC_INTERN const EqmStartType EqmStartPlaneHarmonic, EqmStartPlaneFixedPoint, 
     EqmStartPlaneGuarded, EqmStartPlaneArcLength, EqmStartSphereLinearType, EqmStartSphereFixedPoint,
     EqmStartSphereDescending, EqmStartSphereGuarded, EqmStartSphereConformal, EqmStartSphereResolved,
     EqmStartSphereNormals, EqmStartSphereGauss, EqmStartSphereTutte, EqmStartBallHarmonic, EqmStartBallFixedPoint,
-    EqmStartPlaneCascade, EqmStartSphereCascade;
+    EqmStartPlaneCascade, EqmStartSphereCascade, EqmStartFilePlane, EqmStartFileSphere, EqmStartFileBall;
 
 /* ---- parts that several starts use */
 /* A step in (0, 1] along a straight motion that keeps cells of positive area well away from zero: the whole one if it

@@ -10,6 +10,9 @@ PETSC_INTERN PetscErrorCode EqmDiskUnfold(EqmProblem problem, EqmIterate iterate
                                           PetscInt64 *after);
 PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
                                             PetscInt64 *after);
+/* Disk and square, boundary held: what is far from the folds stays as it is. */
+PETSC_INTERN PetscErrorCode EqmPlaneUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
+                                           PetscInt64 *after);
 /* Requests to stop are checked between rounds (EqmProblemStopRequested). */
 PETSC_INTERN PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
                                           PetscInt64 *after);
