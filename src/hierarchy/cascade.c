@@ -2,6 +2,7 @@
 #include "hierarchy/balance.h"
 #include "hierarchy/reinsert.h"
 #include "base/quiet.h"
+#include <math.h>
 
 PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options)
 {
@@ -114,17 +115,11 @@ static PetscErrorCode RelaxLevel(EqmLevelMap *map, PetscInt left, const EqmCasca
   PetscFunctionReturn(0);
 }
 
-/* On the first rank. */
-static PetscErrorCode CascadeLevels(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
-                                    PetscReal *x, EqmCascadeResult *result)
+/* Maps of all levels; `x`, the finest's places, tells where vertices may move. */
+static PetscErrorCode CreateMaps(EqmHierarchy hierarchy, EqmCascadeTarget target, const PetscReal *x, EqmLevelMap *map)
 {
-  const PetscInt last = hierarchy->num_levels - 1;
-  EqmLevelMap map[EQM_MOST_LEVELS];
-  EqmLevelValue value;
-  PetscInt coarsest;
-
   PetscFunctionBegin;
-  for (PetscInt k = 0; k <= last; k++) {
+  for (PetscInt k = 0; k < hierarchy->num_levels; k++) {
     PetscCall(EqmLevelMapCreate(&hierarchy->level[k], target, &map[k]));
     if (k == 0) {
       PetscCall(PetscArraycpy(map[0].x, x, map[0].dim * hierarchy->level[0].num_vertices));
@@ -133,6 +128,37 @@ static PetscErrorCode CascadeLevels(EqmHierarchy hierarchy, EqmCascadeTarget tar
       PetscCall(EqmLevelMapRestrict(&map[k - 1], &map[k]));
     }
   }
+  PetscFunctionReturn(0);
+}
+
+/* The finest level's map goes to x, and all are freed. */
+static PetscErrorCode TakeFinest(EqmHierarchy hierarchy, EqmLevelMap *map, PetscReal *x, EqmCascadeResult *result)
+{
+  const EqmLevelValue value = EqmLevelMapEvaluate(&map[0], map[0].x);
+
+  PetscFunctionBegin;
+  result->folds = value.folds;
+  result->energy = value.energy;
+  result->objective = value.objective;
+  PetscCall(PetscArraycpy(x, map[0].x, map[0].dim * hierarchy->level[0].num_vertices));
+  for (PetscInt k = 0; k < hierarchy->num_levels; k++) PetscCall(EqmLevelMapDestroy(&map[k]));
+  PetscFunctionReturn(0);
+}
+
+/* What the first rank does. */
+typedef PetscErrorCode (*Work)(EqmHierarchy, EqmCascadeTarget, const EqmCascadeOptions *, PetscReal *,
+                               EqmCascadeResult *);
+
+static PetscErrorCode CascadeLevels(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
+                                    PetscReal *x, EqmCascadeResult *result)
+{
+  const PetscInt last = hierarchy->num_levels - 1;
+  EqmLevelMap map[EQM_MOST_LEVELS];
+  PetscInt coarsest;
+
+  PetscFunctionBegin;
+  PetscCall(CreateMaps(hierarchy, target, x, map));
+  result->before = INFINITY;
   PetscCall(MapCoarsest(map, last, options, &coarsest));
   PetscCall(Show(options, &map[coarsest], "coarsest", 0));
   for (PetscInt k = coarsest - 1; k >= 0; k--) {
@@ -142,25 +168,56 @@ static PetscErrorCode CascadeLevels(EqmHierarchy hierarchy, EqmCascadeTarget tar
     PetscCall(Show(options, &map[k], "reinserted", hard));
     PetscCall(RelaxLevel(&map[k], last - k, options));
   }
-  value = EqmLevelMapEvaluate(&map[0], map[0].x);
-  *result = (EqmCascadeResult){.folds = value.folds, .energy = value.energy};
-  PetscCall(PetscArraycpy(x, map[0].x, map[0].dim * hierarchy->level[0].num_vertices));
-  for (PetscInt k = 0; k <= last; k++) PetscCall(EqmLevelMapDestroy(&map[k]));
+  PetscCall(TakeFinest(hierarchy, map, x, result));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmCascade(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
-                          PetscReal *x, EqmCascadeResult *result)
+static PetscErrorCode RelaxFinest(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
+                                  PetscReal *x, EqmCascadeResult *result)
+{
+  EqmLevelMap map[EQM_MOST_LEVELS];
+  EqmLevelValue value;
+
+  PetscFunctionBegin;
+  PetscCall(CreateMaps(hierarchy, target, x, map));
+  map[0].epsilon = options->epsilon_finest;
+  value = EqmLevelMapEvaluate(&map[0], map[0].x);
+  result->before = value.objective;
+  if (value.folds == 0) PetscCall(RelaxLevel(&map[0], hierarchy->num_levels - 1, options));
+  PetscCall(TakeFinest(hierarchy, map, x, result));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode OnFirstRank(EqmHierarchy hierarchy, Work work, EqmCascadeTarget target,
+                                  const EqmCascadeOptions *options, PetscReal *x, EqmCascadeResult *result)
 {
   char message[EQM_MESSAGE_MAX] = "";
   PetscErrorCode code = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscPushErrorHandler(EqmKeepMessage, message)); /* the other ranks wait for this one */
-  if (hierarchy->rank == 0) code = CascadeLevels(hierarchy, target, options, x, result);
+  if (hierarchy->rank == 0) code = work(hierarchy, target, options, x, result);
   PetscCall(PetscPopErrorHandler());
   PetscCall(EqmAgree(hierarchy->comm, code, message));
   PetscCallMPI(MPI_Bcast(&result->folds, 1, MPIU_INT, 0, hierarchy->comm));
   PetscCallMPI(MPI_Bcast(&result->energy, 1, MPIU_REAL, 0, hierarchy->comm));
+  PetscCallMPI(MPI_Bcast(&result->objective, 1, MPIU_REAL, 0, hierarchy->comm));
+  PetscCallMPI(MPI_Bcast(&result->before, 1, MPIU_REAL, 0, hierarchy->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmCascade(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
+                          PetscReal *x, EqmCascadeResult *result)
+{
+  PetscFunctionBegin;
+  PetscCall(OnFirstRank(hierarchy, CascadeLevels, target, options, x, result));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmCascadeRelax(EqmHierarchy hierarchy, EqmCascadeTarget target, const EqmCascadeOptions *options,
+                               PetscReal *x, EqmCascadeResult *result)
+{
+  PetscFunctionBegin;
+  PetscCall(OnFirstRank(hierarchy, RelaxFinest, target, options, x, result));
   PetscFunctionReturn(0);
 }

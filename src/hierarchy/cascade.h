@@ -19,7 +19,8 @@ typedef struct {
 
 typedef struct {
   PetscInt folds; /* of the finest map: triangles that arithmetic cannot tell from folded ones included */
-  PetscReal energy;
+  PetscReal energy, objective;
+  PetscReal before; /* the objective of the map that was given; infinite: it folds, or there was none */
 } EqmCascadeResult;
 
 PETSC_INTERN PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options);
@@ -29,5 +30,9 @@ PETSC_INTERN PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options)
    to all. Collective. */
 PETSC_INTERN PetscErrorCode EqmCascade(EqmHierarchy hierarchy, EqmCascadeTarget target,
                                        const EqmCascadeOptions *options, PetscReal *x, EqmCascadeResult *result);
+/* Relax a map of the finest level, x, as the cascade does it with its last: options->sweeps and steps. What folds is
+   left as it is. Collective. */
+PETSC_INTERN PetscErrorCode EqmCascadeRelax(EqmHierarchy hierarchy, EqmCascadeTarget target,
+                                            const EqmCascadeOptions *options, PetscReal *x, EqmCascadeResult *result);
 
 #endif

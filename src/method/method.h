@@ -78,6 +78,7 @@ PETSC_INTERN PetscErrorCode EqmMethodCreateLbfgs(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateRgd(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateLm(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateNewton(EqmMethod method);
+PETSC_INTERN PetscErrorCode EqmMethodCreateCascade(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateRiemann(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateCovering(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateQiem(EqmMethod method);

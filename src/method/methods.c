@@ -11,6 +11,7 @@ static const struct {
     {"lbfgs", EqmMethodCreateLbfgs},
     {"rgd", EqmMethodCreateRgd},
     {"newton", EqmMethodCreateNewton},
+    {"cascade", EqmMethodCreateCascade},
     {"riemann", EqmMethodCreateRiemann},
     {"covering", EqmMethodCreateCovering},
     {"qiem", EqmMethodCreateQiem},

@@ -30,6 +30,7 @@ static const EqmMethodDefaults in_plane[] = {
     {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, NULL},
     {"rgd", "rgd", "guarded", 100, 1e-6, 0., 0., NULL, NULL},
     {"newton", "newton", "guarded", 100, 1e-9, 0., 0., NULL, NULL},
+    {"cascade", "cascade", "cascade", 30, 0., 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults on_sphere[] = {
@@ -39,6 +40,7 @@ static const EqmMethodDefaults on_sphere[] = {
     {"lbfgs", "lbfgs", "guarded", 200, 1e-3, 0., 0., NULL, NULL},
     {"rgd", "rgd", "descending", 100, 1e-6, 0., 0., NULL, NULL},
     {"newton", "newton", "guarded", 100, 1e-9, 0., 0., NULL, NULL},
+    {"cascade", "cascade", "cascade", 30, 0., 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults conformal_in_disk[] = {

@@ -2,41 +2,21 @@
    number of vertices. The hierarchy is on one rank. */
 #include "start/start.h"
 #include "domain/domain_private.h"
-#include "hierarchy/cascade.h"
-
-/* From several ranks no larger mesh is gathered on the first. */
-static const PetscInt most_gathered = 1000000;
-
-static EqmCascadeTarget TargetOf(EqmDomain domain)
-{
-  if (domain->dim == 3) return EQM_TARGET_SPHERE;
-  return domain->motion[1] == &EqmMotionCircle ? EQM_TARGET_DISK : EQM_TARGET_SQUARE;
-}
+#include "problem/levels.h"
 
 static PetscErrorCode Cascade(EqmProblem problem, EqmIterate iterate, EqmCascadeResult *result)
 {
-  const EqmDomain domain = problem->domain;
-  const EqmMesh mesh = problem->mesh;
-  EqmHierarchyOptions levels;
   EqmCascadeOptions options;
-  EqmHierarchy hierarchy;
-  PetscBool *corner;
-  PetscReal *x;
+  EqmLevels levels;
 
   PetscFunctionBegin;
-  PetscCall(EqmDomainPlaceBoundary(domain, &iterate->place));
-  PetscCall(PetscMalloc2(mesh->num_local, &corner, mesh->rank == 0 ? domain->dim * mesh->num_vertices : 0, &x));
-  for (PetscInt v = 0; v < mesh->num_local; v++) corner[v] = (PetscBool)(EqmDomainMotion(domain, v) == &EqmMotionCorner);
-  PetscCall(EqmHierarchyOptionsDefault(&levels));
+  PetscCall(EqmDomainPlaceBoundary(problem->domain, &iterate->place));
   PetscCall(EqmCascadeOptionsDefault(&options));
-  levels.corner = corner;
-  PetscCall(EqmHierarchyCreate(mesh, &levels, &hierarchy));
-  PetscCall(EqmHierarchyGather(hierarchy, domain->dim, iterate->place.x, x));
-  PetscCall(EqmCascade(hierarchy, TargetOf(domain), &options, x, result));
-  PetscCall(EqmHierarchyScatter(hierarchy, domain->dim, x, iterate->place.x));
-  PetscCall(EqmMeshUpdateGhosts(mesh, domain->dim, iterate->place.x));
-  PetscCall(EqmHierarchyDestroy(&hierarchy));
-  PetscCall(PetscFree2(corner, x));
+  PetscCall(EqmLevelsCreate(problem, &levels));
+  PetscCall(EqmLevelsGather(&levels, &iterate->place));
+  PetscCall(EqmCascade(levels.hierarchy, levels.target, &options, levels.x, result));
+  PetscCall(EqmLevelsScatter(&levels, &iterate->place));
+  PetscCall(EqmLevelsDestroy(&levels));
   PetscFunctionReturn(0);
 }
 
@@ -44,17 +24,13 @@ static PetscErrorCode Cascade(EqmProblem problem, EqmIterate iterate, EqmCascade
 static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
   const EqmStartType *const guarded = problem->domain->dim == 3 ? &EqmStartSphereGuarded : &EqmStartPlaneGuarded;
+  const char *const obstacle = EqmLevelsObstacle(problem);
   EqmStartOptions other = *options;
   EqmCascadeResult result = {.folds = 0};
 
   PetscFunctionBegin;
-  if (problem->domain->motion[1] == &EqmMotionHeldOnCircle) {
-    PetscCall(EqmProblemNotify(problem, "the start cascade moves the boundary, which is held: guarded instead\n"));
-  } else if (problem->mesh->size > 1 && problem->mesh->num_vertices > most_gathered) {
-    PetscCall(EqmProblemNotify(problem,
-                               "the start cascade works on one rank: not from several for more than %" PetscInt_FMT
-                               " vertices; guarded instead\n",
-                               most_gathered));
+  if (obstacle) {
+    PetscCall(EqmProblemNotify(problem, "the start cascade %s; guarded instead\n", obstacle));
   } else {
     PetscCall(Cascade(problem, iterate, &result));
     if (result.folds == 0) PetscFunctionReturn(0);
