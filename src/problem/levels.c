@@ -1,4 +1,5 @@
 #include "problem/levels.h"
+#include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
 
 /* From several ranks no larger mesh is gathered on the first. */

@@ -1,6 +1,7 @@
 /* First maps that were made before, or by another program: the map in a file, moved and scaled to the unit domain, its
    boundary put exactly where the domain has it, and folds mended. */
 #include "start/start.h"
+#include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
 #include "base/lookup.h"
 #include "measure/recognise.h"

@@ -2,6 +2,7 @@
    vertices go to the mean of their neighbours, the others and the boundary held. At the last all inner vertices do,
    which folds nowhere where the boundary is convex (Tutte 1963). */
 #include "unfold/unfold.h"
+#include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
 
 enum { FARTHEST = 256 };

@@ -3,6 +3,7 @@
 
 typedef struct {
   PetscReal start, energy, angle; /* mean error in degrees */
+  EqmStatus status;
 } Outcome;
 
 static PetscErrorCode Run(const char *shape, PetscInt n, const char *target, const char *options, Outcome *outcome)
@@ -20,6 +21,7 @@ static PetscErrorCode Run(const char *shape, PetscInt n, const char *target, con
   PetscCall(EqmMapGetEnergies(map, &outcome->start, &outcome->energy));
   CHECK(distortion->folds == 0, "%s, %s: %d folds", shape, options, (int)distortion->folds);
   outcome->angle = distortion->angle_error.mean;
+  PetscCall(EqmSolverGetStatus(solver, &outcome->status, NULL));
   PetscCall(EqmMapDestroy(&map));
   PetscCall(EqmSolverDestroy(&solver));
   PetscCall(TestMeshDestroy(&test));
@@ -43,6 +45,19 @@ static PetscErrorCode TestTarget(const char *shape, PetscInt n, const char *targ
   PetscFunctionReturn(0);
 }
 
+/* -method cascade: converges by itself, to a map whose energy is a few times lower than the start's and below `most`. */
+static PetscErrorCode TestMethod(const char *shape, const char *target, PetscReal most)
+{
+  Outcome cascade;
+
+  PetscFunctionBegin;
+  PetscCall(Run(shape, 4000, target, "-method cascade", &cascade));
+  CHECK(cascade.status == EQM_STATUS_CONVERGED, "%s, %s: -method cascade has not converged", shape, target);
+  CHECK(cascade.energy < .5 * cascade.start && cascade.energy < most, "%s, %s: energy %g from %g", shape, target,
+        (double)cascade.energy, (double)cascade.start);
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
@@ -50,6 +65,9 @@ int main(int argc, char **argv)
   PetscCall(TestTarget("hills", 2000, "disk", 3.));
   PetscCall(TestTarget("hills", 2000, "square", 3.));
   PetscCall(TestTarget("head", 2000, "sphere", -.5));
+  PetscCall(TestMethod("hills", "disk", 5e-3));
+  PetscCall(TestMethod("hills", "square", 5e-3));
+  PetscCall(TestMethod("head", "sphere", 5e-3));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
