@@ -52,8 +52,9 @@ typedef struct _p_EqmDomain *EqmDomain;
 
 /* Settings of a new domain; each kind of domain uses its own. */
 typedef struct {
-  const PetscInt *corners;     /* square: four input vertex numbers; NULL: at quarters of the boundary's arc length */
-  const char *boundary_angles; /* disk: a CSV file of boundary vertices and the angles that hold them; NULL: none */
+  const PetscInt *corners;      /* square: four input vertex numbers; NULL: at quarters of the boundary's arc length */
+  const char *boundary_angles;  /* disk: a CSV file of boundary vertices and the angles that hold them; NULL: none */
+  const PetscReal *held_angles; /* disk: these angles per local vertex, as of EqmDomainCreateHeldDisk; NULL: none */
 } EqmDomainOptions;
 /* The type of a domain: a name, and a function that creates it for a mesh. */
 typedef struct {

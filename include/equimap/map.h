@@ -59,16 +59,25 @@ typedef struct {
   PetscInt64 folds;                               /* cells of negative image measure */
 } EqmDistortion;
 
-/* One row per iteration. Row 0 is the start. */
+/* One row per iteration; row 0 is the start. Where folds were mended at the end another row follows for that map, with
+   the number of the last iteration. A figure that the method does not have is -1. */
 typedef struct {
   PetscInt iteration;
   PetscReal energy; /* E of the map (conformal: the Dirichlet energy) */
   PetscReal sd;     /* standard deviation of the ratio */
   PetscInt64 folds;
-  PetscReal step;          /* accepted step length, 0 in row 0 */
-  PetscReal gradient_norm; /* of the function that the method minimises; -1 where the method has none */
-  EqmWork work;            /* so far */
-  PetscReal seconds;       /* since the program's start */
+  PetscReal step;                /* accepted step length, 0 in row 0 */
+  PetscReal gradient_norm;       /* of the function that the method minimises; -1 where the method has none */
+  EqmWork work;                  /* so far */
+  PetscReal seconds;             /* since the program's start */
+  PetscReal stretch;             /* stretch energy sum a^2/w of the mesh scaled to the image's measure; conformal: -1 */
+  PetscReal image_measure;       /* A, the stretch energy's lower bound (002 Corollary 3.4) */
+  PetscInt64 unfolded_from;      /* folds before they were mended, which led to this map; 0: nothing was mended */
+  PetscReal preconditioned_norm; /* sqrt(g^T M^-1 g), M the method's preconditioner */
+  PetscReal wolfe_decrease; /* of the step that led here: (E_new - E) / (step g^T p), at least c1 of (22a) of 000 */
+  PetscReal wolfe_slope;    /* |g_new^T p| / |g^T p|, at most c2 of (22b) */
+  PetscReal change;         /* Euler methods: ||f_new - f||_F, ||f||_F being one (004 (17)) */
+  PetscInt64 phase;         /* of a method in phases, from 1 */
 } EqmHistoryRow;
 
 /* What a run took. */

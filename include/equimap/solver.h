@@ -116,5 +116,9 @@ PETSC_EXTERN PetscBool EqmHessianAvailable(void);
    EQM_ERR_USAGE. Collective. */
 PETSC_EXTERN PetscErrorCode EqmSolverHessianEigenvalues(EqmSolver solver, PetscInt wanted, PetscReal *values,
                                                         PetscInt *found);
+/* EqmSolverStretchHessianEigenvalues - the same of the Hessian of 001 Appendix B, that of the stretch energy in space,
+   for maps to the sphere. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_EXTERN PetscErrorCode EqmSolverStretchHessianEigenvalues(EqmSolver solver, PetscInt wanted, PetscReal *values,
+                                                               PetscInt *found);
 
 #endif

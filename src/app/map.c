@@ -18,10 +18,12 @@ typedef struct {
   EqmIntakeOptions input;
   EqmStopFile stop_file;
   char usage[PETSC_MAX_PATH_LEN];
-  PetscInt hessian_eigenvalues;
+  PetscInt hessian_eigenvalues, hessian; /* how many; of which Hessian, as in the list `hessians` */
   PetscReal radius;
   PetscBool dry_run;
 } MapOptions;
+
+static const char *const hessians[] = {"energy", "appendix-b"};
 
 static PetscErrorCode ReadOptions(MapOptions *options)
 {
@@ -66,6 +68,10 @@ static PetscErrorCode ReadOptions(MapOptions *options)
                             "compute so many of the smallest eigenvalues of the energy's Hessian at the result (needs "
                             "a build with SLEPc)",
                             NULL, options->hessian_eigenvalues, &options->hessian_eigenvalues, NULL));
+  PetscCall(PetscOptionsEList("-hessian",
+                              "which Hessian: that of the energy on the target, or that of the stretch energy in space "
+                              "of 001 Appendix B (sphere)",
+                              NULL, hessians, 2, hessians[options->hessian], &options->hessian, NULL));
   PetscCall(EqmLayoutHelpOptions(PetscOptionsObject));
   PetscCall(PetscOptionsBool("-dry_run", "look at options, mesh and outputs, say whether a run would begin, and stop",
                              NULL, options->dry_run, &options->dry_run, NULL));
@@ -108,6 +114,8 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-radius %g: give a positive number", (double)options->radius);
   if (options->hessian_eigenvalues < 0)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-hessian_eigenvalues: give 0 or more");
+  if (options->hessian == 1 && strcmp(line->command, "sphere"))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-hessian appendix-b: the Hessian of 001 Appendix B is for the sphere");
   if (options->hessian_eigenvalues > 0 && !EqmHessianAvailable()) {
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
             "-hessian_eigenvalues needs SLEPc (Debian: slepc-dev); install it and build equimap again");
@@ -172,7 +180,9 @@ static PetscErrorCode TakeEigenvalues(const MapOptions *options, EqmLedger ledge
   if (wanted == 0) PetscFunctionReturn(0);
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_MEASURE));
   PetscCall(PetscMalloc1(wanted, &values));
-  PetscCall(EqmSolverHessianEigenvalues(solver, wanted, values, &found));
+  PetscCall(options->hessian ? EqmSolverStretchHessianEigenvalues(solver, wanted, values, &found)
+                             : EqmSolverHessianEigenvalues(solver, wanted, values, &found));
+  PetscCall(EqmMapAddText(map, "hessian", hessians[options->hessian]));
   PetscCall(EqmMapSetHessianEigenvalues(map, found, values));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_MEASURE));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\nsmallest eigenvalues of the Hessian:"));

@@ -5,7 +5,9 @@
 static PetscErrorCode Disk(EqmMesh mesh, const EqmDomainOptions *options, EqmDomain *domain)
 {
   PetscFunctionBegin;
-  if (options && options->boundary_angles)
+  if (options && options->held_angles)
+    PetscCall(EqmDomainCreateHeldDisk(mesh, options->held_angles, domain));
+  else if (options && options->boundary_angles)
     PetscCall(EqmDomainReadHeldDisk(mesh, options, domain));
   else
     PetscCall(EqmDomainCreateDisk(mesh, domain));

@@ -1,12 +1,12 @@
-/* The Riemann map of a disk-type surface by its double covering (004 section 2.2): the quasi-implicit Euler method maps
-   the covering to the sphere, a Mobius map brings the boundary to the equator, stereographic projection the surface's
+/* The Riemann map of a disk-type surface by its double covering (004 section 2.2): one of the Euler methods maps the
+   covering to the sphere, a Mobius map brings the boundary to the equator, stereographic projection the surface's
    own half to the disk. One step is a step on the sphere. */
 #include "method/method.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 
 typedef struct {
-  EqmMethod qiem; /* maps the covering; has the settings */
+  EqmMethod inner; /* maps the covering; has the settings */
   EqmDouble covering;
   EqmMesh mesh;
   EqmProblem problem; /* the covering's, to the sphere */
@@ -114,6 +114,7 @@ static PetscErrorCode TakeFromSphere(EqmMethod method, EqmIterate iterate)
   iterate->objective = sphere->objective;
   iterate->gradient_norm = sphere->gradient_norm;
   iterate->step_length = sphere->step_length;
+  iterate->figures = sphere->figures;
   PetscFunctionReturn(0);
 }
 
@@ -167,7 +168,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscFunctionBegin;
   PetscCall(CreateCovering(method));
   PetscCall(CreateSphere(method, iterate));
-  PetscCall(EqmMethodSetUp(data->qiem, data->problem, data->sphere));
+  PetscCall(EqmMethodSetUp(data->inner, data->problem, data->sphere));
   PetscCall(TakeFromSphere(method, iterate));
   PetscFunctionReturn(0);
 }
@@ -177,12 +178,12 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   const Covering *const data = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmMethodStep(data->qiem, data->sphere, outcome));
+  PetscCall(EqmMethodStep(data->inner, data->sphere, outcome));
   if (*outcome == EQM_STEP_TAKEN) {
     data->sphere->number++;
     PetscCall(TakeFromSphere(method, iterate));
   }
-  PetscCall(PetscStrncpy(method->message, data->qiem->message, sizeof(method->message)));
+  PetscCall(PetscStrncpy(method->message, data->inner->message, sizeof(method->message)));
   PetscFunctionReturn(0);
 }
 
@@ -191,7 +192,7 @@ static PetscErrorCode Reset(EqmMethod method)
   Covering *const data = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmMethodReset(data->qiem));
+  PetscCall(EqmMethodReset(data->inner));
   PetscCall(EqmIterateDestroy(&data->sphere));
   PetscCall(EqmProblemDestroy(&data->problem));
   PetscCall(EqmMeshDestroy(&data->mesh));
@@ -204,7 +205,7 @@ static PetscErrorCode Reset(EqmMethod method)
 static PetscErrorCode Destroy(EqmMethod method)
 {
   PetscFunctionBegin;
-  PetscCall(EqmMethodDestroy(&((Covering *)method->data)->qiem));
+  PetscCall(EqmMethodDestroy(&((Covering *)method->data)->inner));
   PetscCall(PetscFree(method->data));
   PetscFunctionReturn(0);
 }
@@ -218,7 +219,7 @@ static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state
   (void)iterate;
   PetscCall(EqmStateUseMesh(state, data->mesh));
   PetscCall(EqmStatePlace(state, data->problem->domain, "sphere", &data->sphere->place));
-  PetscCall(EqmMethodVisitState(data->qiem, data->sphere, state));
+  PetscCall(EqmMethodVisitState(data->inner, data->sphere, state));
   PetscCall(EqmStateUseMesh(state, method->problem->mesh));
   PetscFunctionReturn(0);
 }
@@ -226,24 +227,45 @@ static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state
 static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
 {
   PetscFunctionBegin;
-  PetscCall(EqmMethodSetFromOptions(((Covering *)method->data)->qiem, PetscOptionsObject));
+  PetscCall(EqmMethodSetFromOptions(((Covering *)method->data)->inner, PetscOptionsObject));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmMethodCreateCovering(EqmMethod method)
+static PetscErrorCode Create(EqmMethod method, const char *inner, const char *purpose)
 {
   Covering *data;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&data));
   method->data = data;
-  method->purpose = "Riemann map by the double covering and the quasi-implicit Euler method (004)";
-  PetscCall(EqmMethodCreate(method->comm, "qiem", &data->qiem));
+  method->purpose = purpose;
+  PetscCall(EqmMethodCreate(method->comm, inner, &data->inner));
   method->ops = (EqmMethodOps){.set_from_options = SetFromOptions,
                                .set_up = SetUp,
                                .step = Step,
                                .state = State,
                                .reset = Reset,
                                .destroy = Destroy};
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMethodCreateCovering(EqmMethod method)
+{
+  PetscFunctionBegin;
+  PetscCall(Create(method, "qiem", "Riemann map by the double covering and the quasi-implicit Euler method (004)"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMethodCreateCoveringExplicit(EqmMethod method)
+{
+  PetscFunctionBegin;
+  PetscCall(Create(method, "euler-explicit", "Riemann map by the double covering and the explicit Euler method (004)"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMethodCreateCoveringImplicit(EqmMethod method)
+{
+  PetscFunctionBegin;
+  PetscCall(Create(method, "euler-implicit", "Riemann map by the double covering and the implicit Euler method (004)"));
   PetscFunctionReturn(0);
 }

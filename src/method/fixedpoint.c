@@ -1,13 +1,45 @@
 /* The fixed-point iteration of stretch energy minimisation: disk with a moving boundary (000 (14)), square (002
-   Algorithm 1). */
-#include "method/method.h"
+ * Algorithm 1). */
+#include "method/fixedpoint.h"
 #include "domain/domain_private.h"
 
+typedef enum { STOP_AUTO, STOP_RISE, STOP_STRETCH, STOP_NONE } FixedPointStop;
+static const char *const fixed_point_stops[] = {"auto", "rise", "stretch", "none", "EqmFixedPointStop", "EQM_", NULL};
+
 typedef struct {
+  PetscEnum stop; /* a FixedPointStop */
+  PetscReal eps;
+  PetscBool ended; /* the last step met eps */
   PetscReal *weights, *columns, *inverted;
   signed char *group;
-  EqmPlace to;
+  EqmPlace to, before;
 } FixedPoint;
+
+/* The energy, with landmarks the sum of 000 (46). */
+static PetscErrorCode TakeObjective(EqmMethod method, EqmIterate iterate)
+{
+  const EqmLandmarks *const landmarks = &method->problem->landmarks;
+  PetscReal squares = 0.;
+
+  PetscFunctionBegin;
+  if (landmarks->num_total > 0)
+    PetscCall(EqmLandmarksSquares(landmarks, method->problem->domain, iterate->place.x, NULL, &squares));
+  iterate->objective = iterate->totals.energy + landmarks->lambda * squares;
+  PetscFunctionReturn(0);
+}
+
+/* Landmarks are drawn with the boundary held; to a boundary that follows the interior (14b) the paper has no way. */
+static PetscErrorCode CheckLandmarks(EqmMethod method)
+{
+  const EqmProblem problem = method->problem;
+
+  PetscFunctionBegin;
+  if (problem->landmarks.num_total > 0 && problem->domain->motion[1] != &EqmMotionHeldOnCircle)
+    EqmFail(method->comm, EQM_ERR_USAGE,
+            "-method fixed-point draws landmarks on the disk with its boundary held only "
+            "(000 section 6); take lm, lbfgs, ncg or rgd");
+  PetscFunctionReturn(0);
+}
 
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
@@ -15,12 +47,15 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   FixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
+  PetscCall(CheckLandmarks(method));
   PetscCall(PetscMalloc4(EqmCellNumEdges(mesh->cell_size) * mesh->num_local_cells, &fp->weights, 2 * mesh->num_owned,
                          &fp->columns, 2 * mesh->num_local, &fp->inverted, mesh->num_local, &fp->group));
   for (PetscInt v = 0; v < mesh->num_local; v++) fp->group[v] = mesh->on_boundary[v] ? 1 : 0;
   PetscCall(EqmPlaceCreate(method->problem->domain, &fp->to));
+  PetscCall(EqmPlaceCreate(method->problem->domain, &fp->before));
+  fp->ended = PETSC_FALSE;
   iterate->gradient_norm = -1.;
-  iterate->objective = iterate->totals.energy;
+  PetscCall(TakeObjective(method, iterate));
   PetscFunctionReturn(0);
 }
 
@@ -31,6 +66,7 @@ static PetscErrorCode Reset(EqmMethod method)
   PetscFunctionBegin;
   PetscCall(PetscFree4(fp->weights, fp->columns, fp->inverted, fp->group));
   PetscCall(EqmPlaceDestroy(&fp->to));
+  PetscCall(EqmPlaceDestroy(&fp->before));
   PetscFunctionReturn(0);
 }
 
@@ -53,9 +89,9 @@ static PetscErrorCode SolveGroup(EqmMethod method, EqmIterate iterate, signed ch
   PetscFunctionReturn(0);
 }
 
-/* 000 (14b): the boundary follows the interior, inverted in the circle; then centred (14d) and put on the circle (14e).
- */
-static PetscErrorCode MoveBoundary(EqmMethod method, EqmIterate iterate)
+/* 000 (14b): where the boundary would follow the interior, inverted in the circle, centred (14d): two columns on the
+   owned boundary vertices. A vertex at the very centre is everywhere far out: it draws nowhere. */
+static PetscErrorCode FollowInterior(EqmMethod method, EqmIterate iterate)
 {
   FixedPoint *const fp = method->data;
   const EqmMesh mesh = method->problem->mesh;
@@ -65,22 +101,68 @@ static PetscErrorCode MoveBoundary(EqmMethod method, EqmIterate iterate)
   PetscFunctionBegin;
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     const PetscReal *const x = iterate->place.x + 2 * v, squared = x[0] * x[0] + x[1] * x[1];
-    for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = fp->group[v] == 0 ? x[c] / squared : 0.;
+    const PetscBool draws = (PetscBool)(fp->group[v] == 0 && squared > PETSC_MACHINE_EPSILON * PETSC_MACHINE_EPSILON);
+    for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = draws ? x[c] / squared : 0.;
   }
   PetscCall(SolveGroup(method, iterate, 1, fp->inverted));
   for (PetscInt v = 0; v < n; v++) {
-    if (fp->group[v] != 1) continue;
-    for (PetscInt c = 0; c < 2; c++) sum[c] += fp->columns[c * n + v];
+    for (PetscInt c = 0; c < 2 && fp->group[v] == 1; c++) sum[c] += fp->columns[c * n + v];
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
-  for (PetscInt v = 0; v < n; v++) {
-    if (fp->group[v] != 1) continue;
-    const PetscReal b[2] = {fp->columns[v] - sum[0] / mesh->num_boundary_vertices,
-                            fp->columns[n + v] - sum[1] / mesh->num_boundary_vertices};
-    const PetscReal length = PetscSqrtReal(b[0] * b[0] + b[1] * b[1]);
-    for (PetscInt c = 0; c < 2; c++) iterate->place.x[2 * v + c] = b[c] / length;
+  for (PetscInt k = 0; k < 2 * n; k++) {
+    if (fp->group[k % n] == 1) fp->columns[k] -= sum[k / n] / mesh->num_boundary_vertices;
   }
-  PetscCall(EqmMeshUpdateGhosts(mesh, 2, iterate->place.x));
+  PetscFunctionReturn(0);
+}
+
+/* The boundary put on the circle (14e) after a share of the way from where it is to where it would follow; a vertex
+   that is drawn nowhere stays. */
+static PetscErrorCode PutOnCircle(EqmMethod method, EqmIterate iterate, PetscReal share, EqmPlace *to)
+{
+  const FixedPoint *const fp = method->data;
+  const EqmMesh mesh = method->problem->mesh;
+  const PetscInt n = mesh->num_owned;
+
+  PetscFunctionBegin;
+  for (PetscInt v = 0; v < n; v++) {
+    const PetscReal *const x = iterate->place.x + 2 * v, b[2] = {fp->columns[v], fp->columns[n + v]};
+    const PetscReal length = PetscSqrtReal(b[0] * b[0] + b[1] * b[1]);
+    if (fp->group[v] != 1) continue;
+    if (length > PETSC_MACHINE_EPSILON) {
+      const PetscReal angle = share * PetscAtan2Real(x[0] * b[1] - x[1] * b[0], x[0] * b[0] + x[1] * b[1]);
+      const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
+      to->x[2 * v] = share == 1. ? b[0] / length : c * x[0] - s * x[1];
+      to->x[2 * v + 1] = share == 1. ? b[1] / length : s * x[0] + c * x[1];
+    } else {
+      for (PetscInt c = 0; c < 2; c++) to->x[2 * v + c] = x[c];
+    }
+  }
+  PetscCall(EqmMeshUpdateGhosts(mesh, 2, to->x));
+  PetscFunctionReturn(0);
+}
+
+/* 000 (14b), (14d), (14e) do not keep the boundary in order (10): where they break it, it goes only so far as the order
+   holds, half the way, a quarter, ... and at last not at all. */
+static PetscErrorCode MoveBoundary(EqmMethod method, EqmIterate iterate)
+{
+  enum { MOST_HALVINGS = 10 };
+  FixedPoint *const fp = method->data;
+  const EqmDomain domain = method->problem->domain;
+  PetscBool in_order = PETSC_FALSE;
+  PetscReal share = 1.;
+
+  PetscFunctionBegin;
+  PetscCall(FollowInterior(method, iterate));
+  PetscCall(EqmPlaceCopy(domain, &iterate->place, &fp->to));
+  for (PetscInt k = 0; k < MOST_HALVINGS && !in_order; k++, share *= .5) {
+    PetscCall(PutOnCircle(method, iterate, share, &fp->to));
+    PetscCall(EqmDomainBoundaryInOrder(domain, &fp->to, &in_order));
+    iterate->step_length = share;
+  }
+  if (in_order)
+    PetscCall(EqmPlaceCopy(domain, &fp->to, &iterate->place));
+  else
+    iterate->step_length = 0.;
   PetscFunctionReturn(0);
 }
 
@@ -119,6 +201,8 @@ static PetscErrorCode Pass(EqmMethod method, EqmIterate iterate)
   PetscCall(EqmLaplacianWeights(method->problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, fp->weights));
   if (method->problem->domain->motion[1] == &EqmMotionCircle) {
     PetscCall(StepOnDisk(method, iterate));
+  } else if (method->problem->landmarks.num_total > 0) {
+    PetscCall(EqmFixedPointDraw(method->problem, fp->weights, &iterate->place));
   } else {
     PetscCall(EqmHarmonicMap(method->problem, fp->weights, &iterate->place, &fp->to));
     PetscCall(EqmPlaceCopy(method->problem->domain, &fp->to, &iterate->place));
@@ -126,27 +210,91 @@ static PetscErrorCode Pass(EqmMethod method, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
-/* On the sphere the iteration does not converge: it ends where the energy first rises (001 Algorithm 2). */
+/* E_S of the mesh scaled to the target's measure; the image's may be another. */
+static PetscReal Stretch(EqmProblem problem, const EqmImageTotals *totals)
+{
+  return totals->total * (totals->energy + totals->total) / problem->domain->target_measure;
+}
+
+/* 001 Algorithm 2, line 5: the step is the last one if E_S fell by no more than eps. */
+static PetscErrorCode JudgeStretch(EqmMethod method, PetscReal fall)
+{
+  FixedPoint *const fp = method->data;
+
+  PetscFunctionBegin;
+  fp->ended = (PetscBool)(fall <= fp->eps);
+  if (fp->ended)
+    PetscCall(PetscSNPrintf(method->message, sizeof(method->message),
+                            "the stretch energy fell by no more than %g in a step", (double)fp->eps));
+  PetscFunctionReturn(0);
+}
+
+/* Back to the map before the step that raised the energy (001 Table 5). */
+static PetscErrorCode TakeBack(EqmMethod method, EqmIterate iterate)
+{
+  FixedPoint *const fp = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPlaceCopy(method->problem->domain, &fp->before, &iterate->place));
+  PetscCall(EqmIterateUpdate(method->problem, iterate));
+  PetscCall(PetscStrncpy(method->message, "the next fixed-point step would raise the energy: there the iteration ends",
+                         sizeof(method->message)));
+  PetscFunctionReturn(0);
+}
+
+/* On the sphere the iteration has no limit to go to: unless it is told otherwise it ends where the energy first rises.
+ */
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
   FixedPoint *const fp = method->data;
-  const PetscReal before = iterate->totals.energy;
+  const EqmImageTotals before = iterate->totals;
+  const FixedPointStop by_default = method->problem->domain->curved_image ? STOP_RISE : STOP_NONE,
+                       stop = (int)fp->stop == STOP_AUTO ? by_default : (FixedPointStop)fp->stop;
 
   PetscFunctionBegin;
+  *outcome = EQM_STEP_CONVERGED;
+  if (fp->ended) PetscFunctionReturn(0);
   *outcome = EQM_STEP_TAKEN;
-  if (method->problem->domain->curved_image) PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &fp->to));
+  iterate->step_length = 1.;
+  PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &fp->before));
   PetscCall(Pass(method, iterate));
   PetscCall(EqmIterateUpdate(method->problem, iterate));
-  if (method->problem->domain->curved_image && !(iterate->totals.energy < before)) {
-    PetscCall(EqmPlaceCopy(method->problem->domain, &fp->to, &iterate->place));
-    PetscCall(EqmIterateUpdate(method->problem, iterate));
-    PetscCall(PetscStrncpy(method->message,
-                           "the next fixed-point step would raise the energy: there the iteration ends",
-                           sizeof(method->message)));
+  if (stop == STOP_RISE && !(iterate->totals.energy < before.energy)) {
+    PetscCall(TakeBack(method, iterate));
     *outcome = EQM_STEP_CONVERGED;
+  } else if (stop == STOP_STRETCH) {
+    PetscCall(JudgeStretch(method, Stretch(method->problem, &before) - Stretch(method->problem, &iterate->totals)));
   }
-  iterate->step_length = 1.;
-  iterate->objective = iterate->totals.energy;
+  PetscCall(TakeObjective(method, iterate));
+  PetscFunctionReturn(0);
+}
+
+/* Nothing but the map goes over from step to step, and whether there is another. */
+static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
+{
+  FixedPoint *const fp = method->data;
+
+  PetscFunctionBegin;
+  (void)iterate;
+  PetscCall(EqmStateBool(state, "ended", &fp->ended));
+  if (EqmStateIsLoading(state) && fp->ended) PetscCall(JudgeStretch(method, 0.)); /* says so again */
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
+{
+  FixedPoint *const fp = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(
+      PetscOptionsEnum("-fixed_point_stop",
+                       "fixed-point: where it ends beside -max_it and -energy_rtol: rise, before the energy rises "
+                       "(auto: on the sphere); stretch, when the stretch energy has fallen by no more than "
+                       "-fixed_point_eps (001 Algorithm 2); none (auto: elsewhere)",
+                       "EqmSolverSetFromOptions", fixed_point_stops, fp->stop, &fp->stop, NULL));
+  PetscCall(PetscOptionsReal("-fixed_point_eps",
+                             "fixed-point: epsilon of 001 Algorithm 2, for a mesh scaled to the target's area",
+                             "EqmSolverSetFromOptions", fp->eps, &fp->eps, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -156,8 +304,11 @@ PetscErrorCode EqmMethodCreateFixedPoint(EqmMethod method)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&fp));
+  fp->eps = 1e-6;
   method->data = fp;
+  method->takes_landmarks = PETSC_TRUE;
   method->purpose = "stretch energy minimisation by fixed-point iteration (000 (14), 001 Algorithm 2, 002 Algorithm 1)";
-  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .reset = Reset};
+  method->ops =
+      (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);
 }

@@ -54,10 +54,24 @@ PetscErrorCode EqmFlowEnergy(EqmProblem problem, const EqmPlace *place, PetscRea
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmFlowChange(EqmProblem problem, const EqmPlace *from, const EqmPlace *to, PetscReal *change)
+{
+  PetscReal sum = 0.;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 3 * problem->mesh->num_owned; k++) sum += PetscSqr(to->x[k] - from->x[k]);
+  PetscCall(MPIU_Allreduce(&sum, change, 1, MPIU_REAL, MPIU_SUM, problem->comm));
+  *change = PetscSqrtReal(*change / problem->mesh->num_vertices);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmFlowAccept(EqmProblem problem, EqmIterate iterate, const EqmPlace *place, PetscReal time_step)
 {
   PetscFunctionBegin;
-  if (place->x != iterate->place.x) PetscCall(EqmPlaceCopy(problem->domain, place, &iterate->place));
+  if (place->x != iterate->place.x) {
+    PetscCall(EqmFlowChange(problem, &iterate->place, place, &iterate->figures.change));
+    PetscCall(EqmPlaceCopy(problem->domain, place, &iterate->place));
+  }
   PetscCall(EqmIterateUpdate(problem, iterate));
   PetscCall(EqmFlowSpeed(problem, &iterate->place, &iterate->gradient_norm));
   iterate->objective = iterate->totals.energy;

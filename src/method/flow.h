@@ -27,6 +27,9 @@ PETSC_INTERN PetscErrorCode EqmFlowEnergy(EqmProblem problem, const EqmPlace *pl
 /* `place` becomes the present map, reached by a time step. Collective. */
 PETSC_INTERN PetscErrorCode EqmFlowAccept(EqmProblem problem, EqmIterate iterate, const EqmPlace *place,
                                           PetscReal time_step);
+/* ||to - from||_F in the scale of 004 (11), in which ||f||_F is one. Collective. */
+PETSC_INTERN PetscErrorCode EqmFlowChange(EqmProblem problem, const EqmPlace *from, const EqmPlace *to,
+                                          PetscReal *change);
 /* The options -flow_*, which the three methods share. Collective. */
 PETSC_INTERN PetscErrorCode EqmFlowSetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject);
 /* For the `state` of the three methods: the time step, and whether the method has converged. Collective. */

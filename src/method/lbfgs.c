@@ -135,7 +135,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   *outcome = EQM_STEP_STALLED;
   if (!(slope < 0.)) PetscFunctionReturn(0);
   if (lb->line_search == EQM_SEARCH_WOLFE)
-    PetscCall(EqmWolfeSearch(TryStep, method, iterate->objective, slope, &t, &energy));
+    PetscCall(EqmWolfeSearch(TryStep, method, iterate->objective, slope, EQM_WOLFE_FLATNESS, &t, &energy));
   else
     PetscCall(Backtrack(method, iterate, slope, &t, &energy));
   if (t == 0.) PetscFunctionReturn(0);

@@ -38,9 +38,10 @@ struct _p_EqmMethod {
   char name[32];
   const char *purpose; /* one-line description */
   EqmMethodOps ops;
-  EqmProblem problem;    /* NULL before EqmMethodSetUp */
-  EqmIterate iterate;    /* the one that is worked on, for callbacks */
-  PetscBool takes_terms; /* it minimises the problem's added terms with the leading one */
+  EqmProblem problem;        /* NULL before EqmMethodSetUp */
+  EqmIterate iterate;        /* the one that is worked on, for callbacks */
+  PetscBool takes_landmarks; /* it draws the problem's landmarks, though it takes no terms */
+  PetscBool takes_terms;     /* it minimises the problem's added terms with the leading one */
   /* What the leading term must have: be least where all ratios are one; second derivatives. */
   PetscBool needs_ratios, needs_hessian;
   PetscBool is_set_up;
@@ -81,6 +82,8 @@ PETSC_INTERN PetscErrorCode EqmMethodCreateNewton(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateCascade(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateRiemann(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateCovering(EqmMethod method);
+PETSC_INTERN PetscErrorCode EqmMethodCreateCoveringExplicit(EqmMethod method);
+PETSC_INTERN PetscErrorCode EqmMethodCreateCoveringImplicit(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateQiem(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateEulerExplicit(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateEulerImplicit(EqmMethod method);

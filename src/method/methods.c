@@ -14,6 +14,8 @@ static const struct {
     {"cascade", EqmMethodCreateCascade},
     {"riemann", EqmMethodCreateRiemann},
     {"covering", EqmMethodCreateCovering},
+    {"covering-explicit", EqmMethodCreateCoveringExplicit},
+    {"covering-implicit", EqmMethodCreateCoveringImplicit},
     {"qiem", EqmMethodCreateQiem},
     {"euler-explicit", EqmMethodCreateEulerExplicit},
     {"euler-implicit", EqmMethodCreateEulerImplicit},

@@ -1,22 +1,23 @@
-/* Preconditioned nonlinear conjugate gradients (000 Algorithm 1), with refreshed preconditioner, other choices of beta
-   and a safeguard. */
-#include "method/method.h"
+/* Preconditioned nonlinear conjugate gradients (000 Algorithm 1), with refreshed preconditioner and other betas. */
+#include "method/ncg.h"
 #include "domain/domain_private.h"
 
-enum { BETA_FR, BETA_PR, BETA_HZ };
 static const char *const ncg_betas[] = {"fletcher-reeves", "polak-ribiere", "hager-zhang",
                                         "EqmNcgBeta",      "EQM_NCG_",      NULL};
+static const char *const ncg_searches[] = {"guarded", "printed", "wolfe", "EqmNcgSearch", "EQM_NCG_", NULL};
 
-typedef struct {
-  PetscInt refresh;
-  PetscEnum beta;
-  PetscBool guard;
-  Vec gradient, preconditioned, direction, old_gradient, old_preconditioned, trial_gradient;
-  EqmMetric metric;
-  PetscReal *image;
-  EqmPlace trial;
-  PetscReal alpha;
-} Ncg;
+/* ||g|| in the norm of M^-1, which 000 Theorem 2 takes to zero. */
+static PetscErrorCode TakeNorms(EqmMethod method, EqmIterate iterate)
+{
+  Ncg *const ncg = method->data;
+  PetscReal product;
+
+  PetscFunctionBegin;
+  PetscCall(VecNorm(ncg->gradient, NORM_2, &iterate->gradient_norm));
+  PetscCall(VecDot(ncg->preconditioned, ncg->gradient, &product));
+  iterate->figures.preconditioned_norm = PetscSqrtReal(PetscMax(product, 0.));
+  PetscFunctionReturn(0);
+}
 
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
@@ -36,8 +37,8 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(EqmMetricRefresh(ncg->metric, &iterate->place));
   PetscCall(EqmProblemEvaluate(method->problem, iterate, &iterate->place, iterate->image, &iterate->objective,
                                ncg->gradient));
-  PetscCall(VecNorm(ncg->gradient, NORM_2, &iterate->gradient_norm));
   PetscCall(EqmMetricApply(ncg->metric, &iterate->place, ncg->gradient, ncg->preconditioned));
+  PetscCall(TakeNorms(method, iterate));
   PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
   PetscCall(VecScale(ncg->direction, -1.));
   ncg->alpha =
@@ -63,68 +64,6 @@ static PetscErrorCode Reset(EqmMethod method)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TryStep(EqmMethod method, EqmIterate iterate, PetscReal alpha, PetscReal *energy)
-{
-  Ncg *const ncg = method->data;
-
-  PetscFunctionBegin;
-  PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, alpha, ncg->direction, &ncg->trial));
-  PetscCall(EqmProblemEvaluate(method->problem, iterate, &ncg->trial, ncg->image, energy, NULL));
-  PetscFunctionReturn(0);
-}
-
-/* 000 (18): the minimum of the parabola through Phi(0), Phi'(0) and Phi at the previous step length. Where the parabola
-   opens downward, the previous length is doubled; where the energy is not finite there is none. */
-static PetscErrorCode ParabolaStep(EqmMethod method, EqmIterate iterate, PetscReal slope, PetscReal *alpha)
-{
-  Ncg *const ncg = method->data;
-  PetscReal energy, curvature;
-
-  PetscFunctionBegin;
-  PetscCall(TryStep(method, iterate, ncg->alpha, &energy));
-  curvature = energy - iterate->objective - ncg->alpha * slope;
-  if (PetscIsInfOrNanReal(energy))
-    *alpha = .1 * ncg->alpha;
-  else
-    *alpha = curvature > 0. ? -ncg->alpha * ncg->alpha * slope / (2. * curvature) : 2. * ncg->alpha;
-  PetscFunctionReturn(0);
-}
-
-/* Energy and gradient at the trial place for step length alpha. */
-static PetscErrorCode TryGradient(EqmMethod method, EqmIterate iterate, PetscReal alpha, PetscReal *energy)
-{
-  Ncg *const ncg = method->data;
-
-  PetscFunctionBegin;
-  PetscCall(EqmDomainMove(method->problem->domain, &iterate->place, alpha, ncg->direction, &ncg->trial));
-  PetscCall(EqmProblemEvaluate(method->problem, iterate, &ncg->trial, ncg->image, energy, ncg->trial_gradient));
-  PetscFunctionReturn(0);
-}
-
-/* Conditions of the convergence theorem that (18) does not ensure: sufficient decrease and an ordered boundary.
-   The step is shortened until both hold; `alpha` 0 if none does. Leaves map, energy and gradient of the step in the
-   trial. */
-static PetscErrorCode Safeguard(EqmMethod method, EqmIterate iterate, PetscReal slope, PetscReal *alpha,
-                                PetscReal *energy)
-{
-  Ncg *const ncg = method->data;
-  const PetscInt most_cuts = ncg->guard ? 30 : 0;
-
-  PetscFunctionBegin;
-  PetscCall(TryGradient(method, iterate, *alpha, energy));
-  for (PetscInt cut = 0; cut < most_cuts; cut++) {
-    PetscBool in_order;
-    PetscCall(EqmDomainBoundaryInOrder(method->problem->domain, &ncg->trial, &in_order));
-    if (in_order && *energy <= iterate->objective + 1e-4 * *alpha * slope) PetscFunctionReturn(0);
-    const PetscReal curvature = *energy - iterate->objective - *alpha * slope,
-                    parabola = -*alpha * *alpha * slope / (2. * curvature);
-    *alpha = in_order && curvature > 0. ? PetscMin(.5 * *alpha, PetscMax(.1 * *alpha, parabola)) : .5 * *alpha;
-    PetscCall(TryGradient(method, iterate, *alpha, energy));
-  }
-  if (most_cuts) *alpha = 0.;
-  PetscFunctionReturn(0);
-}
-
 /* beta of 000 (19b), or of Polak and Ribiere (never negative), or of Hager and Zhang. */
 static PetscErrorCode ComputeBeta(EqmMethod method, EqmIterate iterate, PetscReal old_product, PetscReal *beta)
 {
@@ -134,10 +73,10 @@ static PetscErrorCode ComputeBeta(EqmMethod method, EqmIterate iterate, PetscRea
   PetscFunctionBegin;
   PetscCall(VecDot(ncg->preconditioned, ncg->gradient, &product));
   *beta = product / old_product;
-  if ((int)ncg->beta == BETA_PR) {
+  if ((int)ncg->beta == EQM_NCG_POLAK_RIBIERE) {
     PetscCall(VecDot(ncg->preconditioned, ncg->old_gradient, &cross));
     *beta = PetscMax(0., (product - cross) / old_product);
-  } else if ((int)ncg->beta == BETA_HZ) {
+  } else if ((int)ncg->beta == EQM_NCG_HAGER_ZHANG) {
     PetscReal dy, yh, yy, dg;
     PetscCall(VecAYPX(ncg->old_gradient, -1., ncg->gradient)); /* y = g - g_old, in place of g_old */
     PetscCall(VecDot(ncg->direction, ncg->old_gradient, &dy));
@@ -150,6 +89,38 @@ static PetscErrorCode ComputeBeta(EqmMethod method, EqmIterate iterate, PetscRea
   PetscFunctionReturn(0);
 }
 
+/* The trial becomes the iterate; both sides of 000 (22), each divided by what c1 and c2 stand before. */
+static PetscErrorCode Accept(EqmMethod method, EqmIterate iterate, PetscReal slope, PetscReal alpha, PetscReal energy)
+{
+  Ncg *const ncg = method->data;
+  PetscReal new_slope;
+
+  PetscFunctionBegin;
+  PetscCall(VecCopy(ncg->gradient, ncg->old_gradient));
+  PetscCall(VecCopy(ncg->preconditioned, ncg->old_preconditioned));
+  PetscCall(VecDot(ncg->trial_gradient, ncg->direction, &new_slope));
+  iterate->figures.wolfe_decrease = (energy - iterate->objective) / (alpha * slope);
+  iterate->figures.wolfe_slope = PetscAbsReal(new_slope / slope);
+  PetscCall(EqmIterateAccept(method->problem, iterate, &ncg->trial, ncg->image, energy, alpha));
+  ncg->alpha = alpha;
+  PetscCall(VecCopy(ncg->trial_gradient, ncg->gradient));
+  PetscFunctionReturn(0);
+}
+
+/* g^T p; but for the printed algorithm, what is no descent direction gives way to one. */
+static PetscErrorCode FindSlope(EqmMethod method, PetscReal *slope)
+{
+  Ncg *const ncg = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(VecDot(ncg->gradient, ncg->direction, slope));
+  if (*slope < 0. || (int)ncg->search == EQM_NCG_PRINTED) PetscFunctionReturn(0);
+  PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
+  PetscCall(VecScale(ncg->direction, -1.));
+  PetscCall(VecDot(ncg->gradient, ncg->direction, slope));
+  PetscFunctionReturn(0);
+}
+
 /* 000 Algorithm 1, lines 15-22. */
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
@@ -157,27 +128,17 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   PetscReal slope, alpha, energy, old_product, beta = 0.;
 
   PetscFunctionBegin;
-  PetscCall(VecDot(ncg->gradient, ncg->direction, &slope));
-  if (slope >= 0.) { /* not a descent direction: restart */
-    PetscCall(VecCopy(ncg->preconditioned, ncg->direction));
-    PetscCall(VecScale(ncg->direction, -1.));
-    PetscCall(VecDot(ncg->gradient, ncg->direction, &slope));
-  }
+  PetscCall(FindSlope(method, &slope));
   *outcome = EQM_STEP_STALLED;
-  if (!(slope < 0.)) PetscFunctionReturn(0);
-  PetscCall(ParabolaStep(method, iterate, slope, &alpha));
-  PetscCall(Safeguard(method, iterate, slope, &alpha, &energy));
+  if (slope == 0. || ((int)ncg->search != EQM_NCG_PRINTED && !(slope < 0.))) PetscFunctionReturn(0);
+  PetscCall(EqmNcgSearch(method, iterate, slope, &alpha, &energy));
   if (alpha == 0. || PetscIsInfOrNanReal(energy)) PetscFunctionReturn(0);
   PetscCall(VecDot(ncg->preconditioned, ncg->gradient, &old_product));
-  PetscCall(VecCopy(ncg->gradient, ncg->old_gradient));
-  PetscCall(VecCopy(ncg->preconditioned, ncg->old_preconditioned));
-  PetscCall(EqmIterateAccept(method->problem, iterate, &ncg->trial, ncg->image, energy, alpha));
-  ncg->alpha = alpha;
-  PetscCall(VecCopy(ncg->trial_gradient, ncg->gradient));
-  PetscCall(VecNorm(ncg->gradient, NORM_2, &iterate->gradient_norm));
+  PetscCall(Accept(method, iterate, slope, alpha, energy));
   const PetscBool refreshed = (PetscBool)(ncg->refresh > 0 && (iterate->number + 1) % ncg->refresh == 0);
   if (refreshed) PetscCall(EqmMetricRefresh(ncg->metric, &iterate->place));
   PetscCall(EqmMetricApply(ncg->metric, &iterate->place, ncg->gradient, ncg->preconditioned));
+  PetscCall(TakeNorms(method, iterate));
   if (!refreshed) PetscCall(ComputeBeta(method, iterate, old_product, &beta));
   PetscCall(VecAXPBY(ncg->direction, -1., beta, ncg->preconditioned));
   *outcome = EQM_STEP_TAKEN;
@@ -208,9 +169,16 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
       "EqmSolverSetFromOptions", ncg->refresh, &ncg->refresh, NULL, 0));
   PetscCall(PetscOptionsEnum("-ncg_beta", "ncg: how the directions are conjugated", "EqmSolverSetFromOptions",
                              ncg_betas, ncg->beta, &ncg->beta, NULL));
-  PetscCall(PetscOptionsBool("-ncg_guard",
-                             "ncg: shorten a step of (18) that does not decrease the energy or disorders the boundary",
-                             "EqmSolverSetFromOptions", ncg->guard, &ncg->guard, NULL));
+  PetscCall(PetscOptionsEnum("-ncg_line_search",
+                             "ncg: how the step length is found: guarded, by the parabola of 000 (18), shortened where "
+                             "that does not decrease the energy or disorders the boundary; printed, by (18) alone; "
+                             "wolfe, such that the strong Wolfe conditions (22) hold",
+                             "EqmSolverSetFromOptions", ncg_searches, ncg->search, &ncg->search, NULL));
+  PetscCall(PetscOptionsReal("-ncg_c2", "ncg, wolfe: c2 of (22b), which 000 Theorem 2 wants below one half",
+                             "EqmSolverSetFromOptions", ncg->c2, &ncg->c2, NULL));
+  if (!(ncg->c2 > 1e-4 && ncg->c2 < 1.))
+    EqmFail(method->comm, EQM_ERR_USAGE, "-ncg_c2 %g: give a number between c1 = 1e-4 and 1; the theorem wants < .5",
+            (double)ncg->c2);
   PetscFunctionReturn(0);
 }
 
@@ -220,7 +188,7 @@ PetscErrorCode EqmMethodCreateNcg(EqmMethod method)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&ncg));
-  ncg->guard = PETSC_TRUE;
+  ncg->c2 = .4;
   method->data = ncg;
   method->purpose = "preconditioned nonlinear conjugate gradients (000 Algorithm 1)";
   method->takes_terms = PETSC_TRUE;

@@ -273,11 +273,15 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   change = energy - q->energy;
   q->energy = energy;
   q->steps++;
-  PetscCall(EqmPlaceCopy(method->problem->domain, &q->trial, &iterate->place));
+  const EqmPlace before = iterate->place;
+  iterate->place = q->trial;
+  q->trial = before;
   if (phase == 2)
     PetscCall(EqmSphereOrient(method->problem,
                               iterate)); /* the indefinite matrix may mirror the map, which has the same energy */
   PetscCall(EqmPlaceMakeFrames(method->problem->domain, &iterate->place));
+  PetscCall(EqmFlowChange(method->problem, &q->trial, &iterate->place, &iterate->figures.change));
+  iterate->figures.phase = phase;
   PetscCall(phase == 1 ? AfterPhase1(method, iterate, change) : AfterPhase2(method, iterate, change));
   PetscCall(EqmFlowAccept(method->problem, iterate, &iterate->place, dt));
   *outcome = EQM_STEP_TAKEN;

@@ -1,7 +1,7 @@
 /* Strong Wolfe conditions by bracketing and cubic interpolation (Nocedal and Wright, Algorithms 3.5 and 3.6). */
 #include "method/wolfe.h"
 
-static const PetscReal decrease = 1e-4, flatness = .9; /* c1 and c2 */
+static const PetscReal decrease = 1e-4; /* c1 */
 enum { MOST_TRIALS = 20 };
 
 typedef struct {
@@ -26,10 +26,11 @@ static PetscReal CubicMinimum(const Sample *a, const Sample *b)
 
 /* EqmWolfeSearch - a step length t with value(t) <= value + c1 t slope and |slope(t)| <= c2 |slope|.
 
-   Collective. value, slope - at t = 0, the slope negative; t - 1 is tried first; the last trial is the one returned;
-   if the second condition is not met within the trials, the best length that meets the first, 0 if there is none. */
-PetscErrorCode EqmWolfeSearch(EqmTryStep try_step, void *context, PetscReal value, PetscReal slope, PetscReal *t,
-                              PetscReal *new_value)
+   Collective. value, slope - at t = 0, the slope negative; flatness - c2; t - 1 is tried first; the last trial is that
+   of the answer; if the second condition is not met within the trials, the best length that meets the first, 0 if there
+   is none. */
+PetscErrorCode EqmWolfeSearch(EqmTryStep try_step, void *context, PetscReal value, PetscReal slope, PetscReal flatness,
+                              PetscReal *t, PetscReal *new_value)
 {
   Sample low = {0., value, slope}, high = low, now = {1., 0., 0.};
   PetscBool bracketed = PETSC_FALSE;

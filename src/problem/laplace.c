@@ -6,7 +6,8 @@ typedef struct {
   EqmMesh mesh;
   const PetscReal *weights;
   const signed char *group;
-  const PetscReal *mass; /* per cell, added to the diagonals of its corners in equal parts; NULL: none */
+  const PetscReal *mass;  /* per cell, added to the diagonals of its corners in equal parts; NULL: none */
+  const PetscReal *share; /* per vertex, added to its diagonal by each cell; NULL: none */
 } GroupMatrix;
 
 static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
@@ -16,6 +17,7 @@ static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
 
   for (PetscInt k = 0; k < n * n; k++) matrix[k] = 0.;
   for (PetscInt a = 0; a < n && g->mass; a++) matrix[(n + 1) * a] = g->mass[cell] / (PetscReal)n;
+  for (PetscInt a = 0; a < n && g->share; a++) matrix[(n + 1) * a] += g->share[v[a]];
   for (PetscInt e = 0; e < edges; e++) {
     const PetscReal w = g->weights[edges * cell + e];
     PetscInt a, b;
@@ -46,21 +48,39 @@ static PetscErrorCode MakeScalar(EqmProblem problem)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmGroupFactor(EqmProblem problem, const PetscReal *weights, const signed char *group,
-                              const PetscReal *mass)
+static PetscErrorCode Factor(EqmProblem problem, GroupMatrix *matrix)
 {
-  GroupMatrix matrix = {problem->mesh, weights, group, mass};
   PetscBool success;
 
   PetscFunctionBegin;
   PetscCall(MakeScalar(problem));
   problem->holds_fixed_metric = PETSC_FALSE;
-  PetscCall(EqmLinearFactor(problem->scalar, CellLaplacian, &matrix, 1., &success));
+  PetscCall(EqmLinearFactor(problem->scalar, CellLaplacian, matrix, 1., &success));
   if (!success) {
     EqmFail(problem->comm, EQM_ERR_MESH,
             "a Laplacian of this mesh is not positive definite (very obtuse or degenerate cells); remesh, or "
             "take another start");
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmGroupFactor(EqmProblem problem, const PetscReal *weights, const signed char *group,
+                              const PetscReal *mass)
+{
+  GroupMatrix matrix = {problem->mesh, weights, group, mass, NULL};
+
+  PetscFunctionBegin;
+  PetscCall(Factor(problem, &matrix));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmGroupFactorWithShares(EqmProblem problem, const PetscReal *weights, const signed char *group,
+                                        const PetscReal *share)
+{
+  GroupMatrix matrix = {problem->mesh, weights, group, NULL, share};
+
+  PetscFunctionBegin;
+  PetscCall(Factor(problem, &matrix));
   PetscFunctionReturn(0);
 }
 

@@ -16,6 +16,16 @@ typedef struct _p_EqmIterate *EqmIterate;
 typedef struct _p_EqmProblem *EqmProblem;
 typedef struct EqmObjective EqmObjective;
 
+/* What the history tells of a step beyond the map; -1 where the method does not know it, phase 0 where it has none. */
+typedef struct {
+  PetscReal preconditioned_norm, wolfe_decrease, wolfe_slope, change;
+  PetscInt64 phase;
+} EqmStepFigures;
+#define EQM_STEP_UNKNOWN ((EqmStepFigures){-1., -1., -1., -1., 0})
+
+/* What is done about folds: this program's best, the correction that the paper prints (001 section 6.2), nothing. */
+typedef enum { EQM_UNFOLD_AUTO, EQM_UNFOLD_PAPER, EQM_UNFOLD_NONE } EqmUnfolding;
+
 struct _p_EqmIterate {
   EqmPlace place;
   PetscReal *image;      /* image measures, per local cell */
@@ -24,7 +34,9 @@ struct _p_EqmIterate {
   PetscReal gradient_norm;
   PetscReal step_length;                 /* of the step that led here */
   PetscInt number;                       /* of the iteration */
-  PetscInt64 unfolded_from, unfolded_to; /* folds before and after the last unfolding; 0, 0: none was needed */
+  EqmStepFigures figures;                /* of that step; unknown before each */
+  PetscInt64 unfolded_from, unfolded_to; /* folds before and after the unfolding that led here; 0 before: there was
+                                            none */
 };
 
 struct _p_EqmProblem {
@@ -33,6 +45,7 @@ struct _p_EqmProblem {
   EqmMesh mesh;     /* the caller's */
   EqmDomain domain; /* the problem's own from here on */
   const EqmObjective *objective;
+  EqmUnfolding unfolding;
   EqmOrdering ordering;
   EqmLandmarks landmarks;
   struct _p_EqmTerm *terms; /* added to the objective (term.h); NULL: none */
@@ -102,6 +115,9 @@ enum { EQM_GROUP_FIXED = -1 };
    cell or NULL goes to the diagonal. Errors: EQM_ERR_MESH (not positive definite). Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupFactor(EqmProblem problem, const PetscReal *weights, const signed char *group,
                                            const PetscReal *mass);
+/* The same with `share` (per local vertex) added to a vertex's diagonal by each cell around it. Collective. */
+PETSC_INTERN PetscErrorCode EqmGroupFactorWithShares(EqmProblem problem, const PetscReal *weights,
+                                                     const signed char *group, const PetscReal *share);
 /* Solve with the factored Laplacian; columns of num_owned each. Collective. */
 PETSC_INTERN PetscErrorCode EqmGroupSolve(EqmProblem problem, PetscInt num_rhs, PetscReal *columns);
 /* The same as a metric needs it: the factor, or one multigrid cycle (EqmLinearApply). Collective. */

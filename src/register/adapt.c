@@ -6,6 +6,7 @@
 #include "register/landmark_flow.h"
 #include "geometry/rotation.h"
 #include "solver/inner.h"
+#include <string.h>
 
 /* 000 section 6: the rotation of A's map that brings the landmarks closest to their goals. Collective. */
 PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r)
@@ -26,22 +27,53 @@ PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* Minimise the area energy of h o f plus the landmark term for `goal`, from the present map. Collective. */
+/* Is the boundary to be held, h_B = R f_B? The methods of 000 section 6 want it so. */
+static PetscErrorCode HoldsBoundary(EqmRegistration r, EqmSolver solver, PetscBool *held)
+{
+  const char *name;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverGetMethodName(solver, &name));
+  *held = (PetscBool)(r->kind == EQM_IMAGE_PLANE && r->set.boundary != EQM_BOUNDARY_FREE);
+  if (r->set.boundary == EQM_BOUNDARY_AUTO)
+    *held = (PetscBool)(*held && (!strcmp(name, "fixed-point") || !strcmp(name, "ncg")));
+  PetscFunctionReturn(0);
+}
+
+/* A solver for h o f from the present places, with the landmarks drawn to `goal`; `steps` of the fixed-point iteration
+   (49), or as the options have it (0). Collective. */
+static PetscErrorCode CreateSolver(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal,
+                                   PetscReal weight, PetscInt steps, PetscBool *held, EqmSolver *solver)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSolverCreate(side->mesh, r->target, solver));
+  PetscCall(EqmSolverSetTolerances(*solver, PETSC_DEFAULT, EQM_REGISTER_RATIO_TOL, PETSC_DEFAULT, PETSC_DEFAULT));
+  PetscCall(EqmSolverSetMonitor(*solver, EqmSolverMonitorText, NULL));
+  PetscCall(EqmSolverSetFromOptions(*solver));
+  PetscCall(HoldsBoundary(r, *solver, held));
+  if (steps > 0) {
+    PetscCall(EqmSolverSetMethod(*solver, "fixed-point"));
+    PetscCall(EqmSolverSetTolerances(*solver, 0., 0., 0., steps));
+  }
+  if (*held) PetscCall(EqmSolverHoldBoundary(*solver));
+  PetscCall(EqmSolverSetFirstMap(*solver, r->dim, side->x));
+  PetscCall(EqmSolverSetLandmarks(*solver, r->landmarks.num, r->dim, vertices, goal, weight, r->set.tolerance));
+  PetscFunctionReturn(0);
+}
+
+/* Minimise the area energy of h o f with the landmarks drawn to `goal`, from the present places. Collective. */
 static PetscErrorCode MinimiseOnce(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal,
-                                   PetscReal weight, PetscBool *reached)
+                                   PetscReal weight, PetscInt steps, PetscBool *reached)
 {
   EqmSolver solver;
   const EqmPlace *place;
+  PetscBool held;
 
   PetscFunctionBegin;
+  PetscCall(CreateSolver(r, side, vertices, goal, weight, steps, &held, &solver));
   if (!r->set.quiet)
-    PetscCall(PetscPrintf(r->comm, "h for %s: landmarks drawn with weight %g\n", side->name, (double)weight));
-  PetscCall(EqmSolverCreate(side->mesh, r->target, &solver));
-  PetscCall(EqmSolverSetTolerances(solver, PETSC_DEFAULT, EQM_REGISTER_RATIO_TOL, PETSC_DEFAULT, PETSC_DEFAULT));
-  PetscCall(EqmSolverSetMonitor(solver, EqmSolverMonitorText, NULL));
-  PetscCall(EqmSolverSetFromOptions(solver));
-  PetscCall(EqmSolverSetFirstMap(solver, r->dim, side->x));
-  PetscCall(EqmSolverSetLandmarks(solver, r->landmarks.num, r->dim, vertices, goal, weight, r->set.tolerance));
+    PetscCall(PetscPrintf(r->comm, "h for %s: landmarks drawn with weight %g%s\n", side->name, (double)weight,
+                          held ? ", boundary held" : ""));
   PetscCall(EqmRegistrationMinimise(r, solver));
   PetscCall(EqmSolverLandmarksReached(solver, reached));
   PetscCall(EqmSolverGetPlaces(solver, &place));
@@ -53,15 +85,35 @@ static PetscErrorCode MinimiseOnce(EqmRegistration r, EqmSide *side, const Petsc
   PetscFunctionReturn(0);
 }
 
+/* Conjugate gradients with the boundary held begin after five steps of (49) (000 section 6). */
+static PetscErrorCode IsPrecededBySteps(EqmRegistration r, EqmSide *side, PetscBool *precedes)
+{
+  EqmSolver solver;
+  const char *name;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverCreate(side->mesh, r->target, &solver));
+  PetscCall(EqmSolverSetFromOptions(solver));
+  PetscCall(HoldsBoundary(r, solver, precedes));
+  PetscCall(EqmSolverGetMethodName(solver, &name));
+  *precedes = (PetscBool)(*precedes && !strcmp(name, "ncg"));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscFunctionReturn(0);
+}
+
 /* Continuation: the weight grows tenfold until the landmarks are close enough. */
 static PetscErrorCode Minimise(EqmRegistration r, EqmSide *side, const PetscInt *vertices, const PetscReal *goal)
 {
+  enum { FIRST_STEPS = 5 };
   PetscReal weight = r->set.weight;
-  PetscBool reached = PETSC_FALSE;
+  PetscBool reached = PETSC_FALSE, precedes;
 
   PetscFunctionBegin;
+  PetscCall(IsPrecededBySteps(r, side, &precedes));
+  if (precedes) PetscCall(MinimiseOnce(r, side, vertices, goal, weight, FIRST_STEPS, &reached));
+  reached = PETSC_FALSE;
   for (PetscInt stage = 0; stage < r->set.stages && !reached && r->status != EQM_STATUS_STOPPED; stage++, weight *= 10.)
-    PetscCall(MinimiseOnce(r, side, vertices, goal, weight, &reached));
+    PetscCall(MinimiseOnce(r, side, vertices, goal, weight, 0, &reached));
   PetscFunctionReturn(0);
 }
 
@@ -143,12 +195,16 @@ static PetscErrorCode MoveToMiddles(EqmRegistration r)
 /* Collective. */
 PetscErrorCode EqmAdapt(EqmRegistration r)
 {
+  PetscReal *before;
+
   PetscFunctionBegin;
-  if (r->kind == EQM_IMAGE_SPACE) /* 003: the maps of solids are unique up to rotation, so there is no h beyond that */
-    PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(r->dim * r->a.mesh->num_local, &before));
+  PetscCall(PetscArraycpy(before, r->a.x, r->dim * r->a.mesh->num_local));
   if (r->set.by == EQM_BY_MIDPOINTS)
     PetscCall(MoveToMiddles(r));
   else
     PetscCall(Move(r, &r->a, r->landmarks.vertex, r->goal));
+  if (r->kind != EQM_IMAGE_SPACE) PetscCall(EqmMeasureOwnEnergy(r, before));
+  PetscCall(PetscFree(before));
   PetscFunctionReturn(0);
 }

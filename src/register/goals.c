@@ -112,7 +112,7 @@ PetscErrorCode EqmCheckLandmarks(EqmRegistration r)
     if (r->bare) EqmFail(r->comm, EQM_ERR_USAGE, "the target has no vertices: give landmarks as points of it");
     PetscCall(VerticesOfB(r, &vertices));
     PetscCall(EqmSideCheckVertices(&r->b, list->num, vertices, inside_b));
-    if (r->kind == EQM_IMAGE_PLANE) PetscCall(CheckBoundaries(r, inside_a, vertices, inside_b));
+    if (r->kind != EQM_IMAGE_SPHERE) PetscCall(CheckBoundaries(r, inside_a, vertices, inside_b));
     PetscCall(PetscFree(vertices));
   } else {
     PetscCall(CheckPoints(r));

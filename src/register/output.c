@@ -69,6 +69,7 @@ static PetscErrorCode AddLandmarkFigures(EqmRegistration r)
   if (!r->landmarks.num) PetscFunctionReturn(0);
   PetscCall(EqmMapAddFigure(r->map, "register.landmarks.error.mean", f->landmark_mean));
   PetscCall(EqmMapAddFigure(r->map, "register.landmarks.error.max", f->landmark_max));
+  if (r->kind != EQM_IMAGE_SPACE) PetscCall(EqmMapAddFigure(r->map, "register.h.energy", f->own_energy));
   if (!f->landmarks_in_space) PetscFunctionReturn(0);
   PetscCall(EqmMapAddFigure(r->map, "register.landmarks.space_error.mean", f->landmark_space_mean));
   PetscCall(EqmMapAddFigure(r->map, "register.landmarks.space_error.max", f->landmark_space_max));

@@ -58,13 +58,12 @@ static PetscErrorCode FindWhetherTarget(EqmRegistration r, const char *file_b)
   PetscFunctionReturn(0);
 }
 
-/* For solids there is only a rotation; on a surface the method must support landmarks. */
+/* The method must draw landmarks together. */
 static PetscErrorCode CheckMethod(EqmRegistration r)
 {
   EqmSolver solver;
 
   PetscFunctionBegin;
-  if (r->kind == EQM_IMAGE_SPACE) PetscFunctionReturn(0);
   PetscCall(EqmSolverCreate(r->a.mesh, r->target, &solver));
   PetscCall(EqmSolverSetFromOptions(solver));
   PetscCall(EqmSolverRequireLandmarks(solver));
@@ -80,6 +79,10 @@ static PetscErrorCode CheckTogether(EqmRegistration r)
     EqmFail(r->comm, EQM_ERR_USAGE, "-register_by midpoints moves B too, and the target does not move");
   if (r->set.align == EQM_ALIGN_POSE && r->dim == 2)
     EqmFail(r->comm, EQM_ERR_USAGE, "-align pose is for the sphere and the ball: a disk has no pose in space");
+  if (r->kind == EQM_IMAGE_SPACE && (r->set.by == EQM_BY_MIDPOINTS || r->set.start == EQM_LANDMARKS_FLOW))
+    EqmFail(r->comm, EQM_ERR_USAGE,
+            "-register_by midpoints and -landmark_start flow are for surfaces: of a solid the "
+            "best rotation comes first, and then A's map is drawn to the landmarks");
   if (r->landmarks.num) PetscCall(EqmCheckLandmarks(r));
   if (r->landmarks.num) PetscCall(CheckMethod(r));
   PetscFunctionReturn(0);
@@ -122,7 +125,7 @@ static PetscErrorCode Judge(EqmRegistration r)
   if (!r->message[0]) PetscCall(PetscStrncpy(r->message, "the maps are composed", sizeof(r->message)));
   MergeStatus(r, &r->a);
   MergeStatus(r, &r->b);
-  if (r->landmarks.num && r->kind != EQM_IMAGE_SPACE && f->landmark_max > r->set.tolerance) {
+  if (r->landmarks.num && f->landmark_max > r->set.tolerance) {
     r->status = EQM_STATUS_NOT_CONVERGED;
     PetscCall(PetscSNPrintf(r->message, sizeof(r->message),
                             "the landmarks are off by up to %.2g, more than -landmark_tol %g; try a larger "
@@ -302,6 +305,8 @@ PetscErrorCode EqmRegistrationView(EqmRegistration r)
   if (r->landmarks.num)
     PetscCall(PetscPrintf(r->comm, "  landmarks     %" PetscInt_FMT ", error mean %.3e, max %.3e in the target\n",
                           r->landmarks.num, (double)f->landmark_mean, (double)f->landmark_max));
+  if (r->landmarks.num && r->kind != EQM_IMAGE_SPACE)
+    PetscCall(PetscPrintf(r->comm, "  h             energy %.3e, from the target to itself\n", (double)f->own_energy));
   if (r->set.frames)
     PetscCall(PetscPrintf(r->comm,
                           "  frames        %" PetscInt_FMT ", at most %" PetscInt64_FMT " folded cells in one\n",

@@ -12,6 +12,7 @@
 typedef enum { EQM_BY_DIRECT, EQM_BY_MIDPOINTS } EqmRegisterBy;
 typedef enum { EQM_LANDMARKS_FLOW, EQM_LANDMARKS_ROTATION } EqmLandmarkStart;
 typedef enum { EQM_ALIGN_AUTO, EQM_ALIGN_SHAPE, EQM_ALIGN_POSE, EQM_ALIGN_NONE } EqmAlignment;
+typedef enum { EQM_BOUNDARY_AUTO, EQM_BOUNDARY_HELD, EQM_BOUNDARY_FREE } EqmRegisterBoundary;
 typedef enum { EQM_POINTS_AUTO, EQM_POINTS_SURFACE, EQM_POINTS_TARGET } EqmLandmarkPoints;
 
 typedef struct {
@@ -21,6 +22,7 @@ typedef struct {
   PetscBool has_landmarks, repair, quiet;
   EqmRegisterBy by;
   EqmLandmarkStart start;
+  EqmRegisterBoundary boundary;
   EqmLandmarkPoints points;
   EqmAlignment align;
   PetscReal weight, tolerance, reach, wall_time;
@@ -57,9 +59,10 @@ typedef struct {
   PetscReal dissimilarity, dissimilarity_rigid;      /* d(phi) of 003 section 7; after the best rigid motion */
   PetscReal energy_b;                                /* of g, where it was moved of h o g */
   PetscReal energy;                                  /* E of h o f */
-  PetscInt64 folds_a, folds_b;                       /* of h o f and, where it was moved, of g */
-  PetscInt64 folds_phi;                              /* solids: of phi itself, A's cells with their vertices on B */
-  PetscInt64 most_frame_folds;                       /* of a frame of the morph */
+  PetscReal own_energy;        /* E_A of h itself, from the target to the target (000 section 6) */
+  PetscInt64 folds_a, folds_b; /* of h o f and, where it was moved, of g */
+  PetscInt64 folds_phi;        /* solids: of phi itself, A's cells with their vertices on B */
+  PetscInt64 most_frame_folds; /* of a frame of the morph */
 } EqmRegisterFigures;
 
 struct _p_EqmRegistration {
@@ -125,6 +128,8 @@ PETSC_INTERN PetscErrorCode EqmLandmarkErrors(EqmRegistration r);
 /* ---- adapt.c */
 PETSC_INTERN PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmAdapt(EqmRegistration r);
+/* ---- own_energy.c: fill figures.own_energy; `before`: A's places before h. Collective. */
+PETSC_INTERN PetscErrorCode EqmMeasureOwnEnergy(EqmRegistration r, const PetscReal *before);
 /* ---- align.c */
 PETSC_INTERN PetscErrorCode EqmAlign(EqmRegistration r);
 /* ---- compose.c */

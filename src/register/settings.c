@@ -4,6 +4,7 @@
 static const char *const ways[] = {"direct", "midpoints", "EqmRegisterBy", "", NULL};
 static const char *const alignments[] = {"auto", "shape", "pose", "none", "EqmAlignment", "", NULL};
 static const char *const landmark_starts[] = {"flow", "rotation", "EqmLandmarkStart", "", NULL};
+static const char *const boundaries[] = {"auto", "held", "free", "EqmRegisterBoundary", "", NULL};
 static const char *const landmark_points[] = {"auto", "surface", "target", "EqmLandmarkPoints", "", NULL};
 
 static PetscErrorCode ReadLandmarkOptions(EqmRegisterSettings *set, PetscOptionItems *PetscOptionsObject)
@@ -22,6 +23,11 @@ static PetscErrorCode ReadLandmarkOptions(EqmRegisterSettings *set, PetscOptionI
                              "what goes before the minimisation: flow, a smooth area-preserving flow that brings the "
                              "landmarks to their places, or only the best rotation, as the papers have it",
                              NULL, landmark_starts, (PetscEnum)set->start, (PetscEnum *)&set->start, NULL));
+  PetscCall(
+      PetscOptionsEnum("-register_boundary",
+                       "disk: while landmarks are drawn the boundary is held where the best rotation puts it (000 "
+                       "section 6), or free to slide; auto: held with -method fixed-point and ncg",
+                       NULL, boundaries, (PetscEnum)set->boundary, (PetscEnum *)&set->boundary, NULL));
   PetscCall(PetscOptionsReal("-landmark_reach", "how far a landmark's pull reaches in the flow, in radii", NULL,
                              set->reach, &set->reach, NULL));
   PetscCall(PetscOptionsReal("-landmark_weight",

@@ -2,60 +2,47 @@
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
 #include "base/checksum.h"
+#include "store/columns.h"
 #include "store/keptmesh.h"
 
-enum { HISTORY_COLUMNS = 10 };
+/* Row after row: the iteration, the columns of a history, the objective; the columns are told in an attribute. */
+enum { WIDTH = EQM_NUM_HISTORY_COLUMNS + 2 };
 
-static void PackRow(const EqmHistoryRow *row, PetscReal objective, PetscReal *packed)
+static PetscErrorCode NameColumns(char *text, size_t length)
 {
-  const PetscReal values[HISTORY_COLUMNS] = {row->energy,
-                                             row->sd,
-                                             (PetscReal)row->folds,
-                                             row->step,
-                                             row->gradient_norm,
-                                             (PetscReal)row->work.evaluations,
-                                             (PetscReal)row->work.factorizations,
-                                             (PetscReal)row->work.coupled_factorizations,
-                                             (PetscReal)row->work.solves,
-                                             row->seconds};
-
-  for (PetscInt k = 0; k < HISTORY_COLUMNS; k++) packed[k] = values[k];
-  packed[HISTORY_COLUMNS] = objective;
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(text, "iteration, ", length));
+  for (int k = 0; k < EQM_NUM_HISTORY_COLUMNS; k++) {
+    PetscCall(PetscStrlcat(text, EqmHistoryColumns[k].name, length));
+    PetscCall(PetscStrlcat(text, ", ", length));
+  }
+  PetscCall(PetscStrlcat(text, "objective", length));
+  PetscFunctionReturn(0);
 }
 
-static EqmHistoryRow UnpackRow(PetscInt iteration, const PetscReal *packed)
-{
-  return (EqmHistoryRow){.iteration = iteration,
-                         .energy = packed[0],
-                         .sd = packed[1],
-                         .folds = (PetscInt64)packed[2],
-                         .step = packed[3],
-                         .gradient_norm = packed[4],
-                         .work = {(PetscInt64)packed[5], (PetscInt64)packed[6], (PetscInt64)packed[7],
-                                  (PetscInt64)packed[8]},
-                         .seconds = packed[9]};
-}
-
-/* Row by row, the objective last; an attribute names the columns. */
 static PetscErrorCode VisitHistory(EqmState state, EqmSolver solver)
 {
-  char columns[] = "energy, sd, folds, step, gradient_norm, evaluations, factorizations, coupled_factorizations, "
-                   "solves, seconds, objective";
+  char columns[EQM_MESSAGE_MAX];
   PetscReal *packed;
   PetscInt rows = solver->num_history;
 
   PetscFunctionBegin;
-  PetscCall(EqmStateText(state, "history_columns", columns, sizeof(columns)));
+  PetscCall(NameColumns(columns, sizeof(columns)));
+  PetscCall(EqmStateSameText(state, "history_columns", columns));
   PetscCall(EqmStateInt(state, "num_history", &rows));
-  PetscCall(PetscMalloc1((HISTORY_COLUMNS + 1) * rows, &packed));
-  for (PetscInt k = 0; k < solver->num_history; k++)
-    PackRow(&solver->history[k], solver->objectives[k], packed + (HISTORY_COLUMNS + 1) * k);
-  PetscCall(EqmStateReals(state, "history", (HISTORY_COLUMNS + 1) * rows, packed));
+  PetscCall(PetscMalloc1(WIDTH * rows, &packed));
+  for (PetscInt k = 0; k < solver->num_history; k++) {
+    packed[WIDTH * k] = solver->history[k].iteration;
+    EqmHistoryPack(&solver->history[k], packed + WIDTH * k + 1);
+    packed[WIDTH * k + WIDTH - 1] = solver->objectives[k];
+  }
+  PetscCall(EqmStateReals(state, "history", WIDTH * rows, packed));
   if (EqmStateIsLoading(state)) {
     PetscCall(EqmHistoryReserve(solver, rows));
     for (PetscInt k = 0; k < rows; k++) {
-      solver->history[k] = UnpackRow(k, packed + (HISTORY_COLUMNS + 1) * k);
-      solver->objectives[k] = packed[(HISTORY_COLUMNS + 1) * k + HISTORY_COLUMNS];
+      solver->history[k].iteration = (PetscInt)packed[WIDTH * k];
+      EqmHistoryUnpack(packed + WIDTH * k + 1, &solver->history[k]);
+      solver->objectives[k] = packed[WIDTH * k + WIDTH - 1];
     }
     solver->num_history = rows;
   }

@@ -46,6 +46,8 @@ static const EqmMethodDefaults on_sphere[] = {
 static const EqmMethodDefaults conformal_in_disk[] = {
     {"riemann", "riemann", "arc-length", 100, 0., 0., 1e-5, NULL, NULL},
     {"qiem", "covering", "harmonic", 500, 0., 0., 0., NULL, NULL},
+    {"euler-explicit", "covering-explicit", "harmonic", 10000, 0., 0., 0., NULL, NULL},
+    {"euler-implicit", "covering-implicit", "harmonic", 500, 0., 0., 0., NULL, NULL},
 };
 
 static const EqmMethodDefaults conformal_on_sphere[] = {
@@ -81,6 +83,7 @@ static const EqmFormulation formulations[] = {
      .domain = "sphere",
      .objective = &EqmObjectiveAuthalic,
      .unfold = EqmSphereUnfold,
+     .unfold_as_printed = EqmSphereUnfoldAsPrinted,
      .starts = EQM_STARTS_SPHERE,
      .takes_balance = PETSC_TRUE,
      .other_starts = "gauss,cascade,tutte,linear",
@@ -95,6 +98,7 @@ static const EqmFormulation formulations[] = {
      .domain = "sphere",
      .objective = &EqmObjectiveConformal,
      .unfold = EqmSphereUnfold,
+     .unfold_as_printed = EqmSphereUnfoldAsPrinted,
      .finish = EqmConformalFinish,
      .starts = EQM_STARTS_SPHERE,
      METHODS(conformal_on_sphere)},

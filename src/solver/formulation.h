@@ -18,10 +18,14 @@ typedef struct {
   const char *domain;                     /* NULL: the formulation's */
 } EqmMethodDefaults;
 
+/* Mends folds; counts them before and after. */
+typedef PetscErrorCode (*EqmUnfold)(EqmProblem, EqmIterate, PetscInt64 *before, PetscInt64 *after);
+
 typedef struct {
   const char *target, *domain; /* of the tables in mesh/target.c; the mesh decides between several rows of a target */
   const EqmObjective *objective;
-  PetscErrorCode (*unfold)(EqmProblem, EqmIterate, PetscInt64 *before, PetscInt64 *after); /* NULL: cannot */
+  /* Folds mended, and that as the paper prints it; NULL: cannot. */
+  EqmUnfold unfold, unfold_as_printed;
   PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
   EqmStartFamily starts;
   const char *other_starts; /* tried one after the other where the default's leads far from the objective; NULL: none */

@@ -11,8 +11,7 @@
 #include "solver/solver_private.h"
 #include "domain/domain_private.h"
 #include "energy/curvature.h"
-#ifdef EQM_HAVE_SLEPC
-#include <slepceps.h>
+#include "solver/lanczos.h"
 
 typedef struct {
   EqmProblem problem;
@@ -120,13 +119,12 @@ static PetscErrorCode Couple(Hessian *h)
 }
 
 /* y = (H - shift)^-1 x. */
-static PetscErrorCode ApplyInverse(Mat matrix, Vec x, Vec y)
+static PetscErrorCode ApplyInverse(void *context, Vec x, Vec y)
 {
-  Hessian *h;
+  Hessian *const h = context;
   PetscReal along[2];
 
   PetscFunctionBegin;
-  PetscCall(MatShellGetContext(matrix, &h));
   for (int k = 0; k < 2; k++) PetscCall(VecDot(h->solved[k], x, &along[k]));
   PetscCall(VecCopy(x, y));
   PetscCall(SolveFactored(h, y));
@@ -135,40 +133,7 @@ static PetscErrorCode ApplyInverse(Mat matrix, Vec x, Vec y)
   PetscFunctionReturn(0);
 }
 
-/* Lanczos on the inverse; its largest eigenvalues are 1 / (lambda - shift). */
-static PetscErrorCode Lanczos(Hessian *h, PetscInt num_dofs, PetscInt wanted, PetscReal *values, PetscInt *found)
-{
-  const PetscInt n = h->problem->domain->num_dofs;
-  Mat inverse;
-  EPS eps;
-
-  PetscFunctionBegin;
-  if (!SlepcInitializeCalled) PetscCall(SlepcInitializeNoArguments());
-  PetscCall(MatCreateShell(h->problem->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, h, &inverse));
-  PetscCall(MatShellSetOperation(inverse, MATOP_MULT, (void (*)(void))ApplyInverse));
-  PetscCall(EPSCreate(h->problem->comm, &eps));
-  PetscCall(EPSSetOptionsPrefix(eps, "hessian_"));
-  PetscCall(EPSSetOperators(eps, inverse, NULL));
-  PetscCall(EPSSetProblemType(eps, EPS_HEP));
-  PetscCall(EPSSetWhichEigenpairs(eps, EPS_LARGEST_REAL));
-  PetscCall(EPSSetDimensions(eps, wanted, PetscMin(num_dofs, 2 * wanted + 60),
-                             PETSC_DEFAULT)); /* near a minimum they cluster */
-  PetscCall(EPSSetTolerances(eps, 1e-7, 300));
-  PetscCall(EPSSetFromOptions(eps));
-  PetscCall(EPSSolve(eps));
-  PetscCall(EPSGetConverged(eps, found));
-  *found = PetscMin(*found, wanted);
-  for (PetscInt k = 0; k < *found; k++) {
-    PetscScalar theta;
-    PetscCall(EPSGetEigenvalue(eps, k, &theta, NULL));
-    values[k] = h->shift + 1. / theta;
-  }
-  PetscCall(EPSDestroy(&eps));
-  PetscCall(MatDestroy(&inverse));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Eigenvalues(Hessian *h, PetscInt num_dofs, PetscInt wanted, PetscReal *values, PetscInt *found)
+static PetscErrorCode Eigenvalues(Hessian *h, PetscInt wanted, PetscReal *values, PetscInt *found)
 {
   const EqmDomain domain = h->problem->domain;
   const EqmUnknowns unknowns = EqmDomainUnknowns(domain);
@@ -187,7 +152,7 @@ static PetscErrorCode Eigenvalues(Hessian *h, PetscInt num_dofs, PetscInt wanted
   PetscCheck(success, mesh->comm, PETSC_ERR_NOT_CONVERGED,
              "the Hessian is too near to singular for its eigenvalues to be computed");
   PetscCall(Couple(h));
-  PetscCall(Lanczos(h, num_dofs, wanted, values, found));
+  PetscCall(EqmLanczos(h->problem->comm, ApplyInverse, h, h->column[0], h->shift, wanted, values, found));
   PetscCall(EqmLinearDestroy(&h->linear));
   for (int k = 0; k < 2; k++) {
     PetscCall(VecDestroy(&h->column[k]));
@@ -196,20 +161,6 @@ static PetscErrorCode Eigenvalues(Hessian *h, PetscInt num_dofs, PetscInt wanted
   PetscCall(PetscFree2(h->slope, h->share));
   PetscFunctionReturn(0);
 }
-#endif
-
-/* EqmHessianAvailable - can eigenvalues of the Hessian be computed, that is, was the library built with SLEPc?
-
-   Not collective. */
-PetscBool EqmHessianAvailable(void)
-{
-#ifdef EQM_HAVE_SLEPC
-  return PETSC_TRUE;
-#else
-  return PETSC_FALSE;
-#endif
-}
-
 /* EqmSolverHessianEigenvalues - the algebraically smallest eigenvalues of the Hessian of the normalised authalic energy
    at the present map.
 
@@ -220,20 +171,10 @@ PetscBool EqmHessianAvailable(void)
    solves. Errors: EQM_ERR_USAGE (built without SLEPc, or too many wanted). */
 PetscErrorCode EqmSolverHessianEigenvalues(EqmSolver solver, PetscInt wanted, PetscReal *values, PetscInt *found)
 {
-  PetscInt num_dofs;
+  Hessian h = {.problem = solver->problem, .iterate = solver->iterate};
 
   PetscFunctionBegin;
-  *found = 0;
-  if (!EqmHessianAvailable())
-    EqmFail(solver->problem->comm, EQM_ERR_USAGE,
-            "eigenvalues of the Hessian need SLEPc (Debian: slepc-dev); install it and build equimap again");
-  PetscCall(MPIU_Allreduce(&solver->problem->domain->num_dofs, &num_dofs, 1, MPIU_INT, MPI_SUM, solver->problem->comm));
-  if (wanted < 1 || wanted > num_dofs)
-    EqmFail(solver->problem->comm, EQM_ERR_USAGE,
-            "the Hessian has %" PetscInt_FMT " eigenvalues; %" PetscInt_FMT " were asked for", num_dofs, wanted);
-#ifdef EQM_HAVE_SLEPC
-  Hessian h = {.problem = solver->problem, .iterate = solver->iterate};
-  PetscCall(Eigenvalues(&h, num_dofs, wanted, values, found));
-#endif
+  PetscCall(EqmLanczosCheck(solver->problem->comm, solver->problem->domain->num_dofs, wanted, found));
+  PetscCall(Eigenvalues(&h, wanted, values, found));
   PetscFunctionReturn(0);
 }

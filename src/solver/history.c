@@ -1,6 +1,7 @@
 /* The history of a run, and the calls of the monitor. */
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
+#include "problem/objective.h"
 
 PetscErrorCode EqmHistoryReserve(EqmSolver solver, PetscInt rows)
 {
@@ -15,6 +16,8 @@ PetscErrorCode EqmHistoryReserve(EqmSolver solver, PetscInt rows)
 PetscErrorCode EqmHistoryAddRow(EqmSolver solver)
 {
   const EqmIterate iterate = solver->iterate;
+  const EqmImageTotals *const totals = &iterate->totals;
+  const PetscBool is_area = (PetscBool)(solver->problem->objective != &EqmObjectiveConformal);
   EqmWork *work;
   EqmHistoryRow *row;
 
@@ -29,7 +32,15 @@ PetscErrorCode EqmHistoryAddRow(EqmSolver solver)
                          .folds = iterate->totals.folds,
                          .step = iterate->step_length,
                          .gradient_norm = iterate->gradient_norm,
-                         .work = *work};
+                         .work = *work,
+                         .stretch = is_area ? totals->energy + totals->total : -1.,
+                         .image_measure = totals->total,
+                         .preconditioned_norm = iterate->figures.preconditioned_norm,
+                         .wolfe_decrease = iterate->figures.wolfe_decrease,
+                         .wolfe_slope = iterate->figures.wolfe_slope,
+                         .change = iterate->figures.change,
+                         .phase = iterate->figures.phase,
+                         .unfolded_from = iterate->unfolded_from};
   PetscCall(EqmLedgerGetSeconds(solver->mesh->ledger, NULL, NULL, &row->seconds));
   PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_ITERATION, ""));
   PetscFunctionReturn(0);

@@ -18,6 +18,10 @@ PETSC_INTERN PetscErrorCode EqmSolverIgnoreStopRequests(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverSetKeptMesh(EqmSolver solver, const char *name);
 /* Did the last attempt to write a checkpoint fail? Not collective. */
 PETSC_INTERN PetscErrorCode EqmSolverCheckpointFailed(EqmSolver solver, PetscBool *failed);
+/* Disk: hold the boundary where the map of EqmSolverSetFirstMap has it. Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolverHoldBoundary(EqmSolver solver);
+/* The method that is set, "auto" resolved. After EqmSolverSetFromOptions. Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolverGetMethodName(EqmSolver solver, const char **name);
 /* lm: at most so many quasi-Newton steps on each factor, unless -lm_inner says otherwise. Not collective. */
 PETSC_INTERN PetscErrorCode EqmSolverSetInnerSteps(EqmSolver solver, PetscInt steps);
 /* Does the method that is set take landmarks? Errors: EQM_ERR_USAGE if it does not. Collective. */

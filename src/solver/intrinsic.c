@@ -1,6 +1,7 @@
 /* Conformal maps of closed surfaces that fold, or that have cells too small for the arithmetic: computed again on the
    intrinsic Delaunay triangulation (docs/methods.md, Thin limbs). */
 #include "solver/solver_private.h"
+#include "solver/mend.h"
 #include "domain/domain_private.h"
 #include <string.h>
 
@@ -10,6 +11,7 @@ static PetscErrorCode SetImages(EqmSolver solver, EqmProblem other, EqmIterate f
   const EqmSoup soup = solver->mesh->soup;
   const EqmProblem problem = solver->problem;
   const EqmIterate iterate = solver->iterate;
+  PetscBool unfolded;
   PetscReal *slab;
 
   PetscFunctionBegin;
@@ -20,10 +22,7 @@ static PetscErrorCode SetImages(EqmSolver solver, EqmProblem other, EqmIterate f
   PetscCall(EqmPlaceMakeFrames(problem->domain, &iterate->place));
   PetscCall(solver->formulation->finish(solver));
   PetscCall(EqmIterateUpdate(problem, iterate));
-  if (iterate->totals.folds == 0) PetscFunctionReturn(0);
-  PetscCall(solver->formulation->unfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
-  PetscCall(EqmIterateUpdate(problem, iterate));
-  PetscCall(EqmSolverNotifyUnfolded(solver, "of what is left"));
+  PetscCall(EqmSolverMend(solver, "of what is left", &unfolded));
   PetscFunctionReturn(0);
 }
 

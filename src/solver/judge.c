@@ -14,6 +14,16 @@ static PetscBool Stagnates(EqmSolver solver)
                      then - now <= span * solver->settings.energy_rtol * PetscAbsReal(then));
 }
 
+/* Has it fallen by no more than the absolute tolerance in the last iteration (001 Algorithm 2 and 003 Algorithm 1 end
+ * so)? */
+static PetscBool StandsStill(EqmSolver solver)
+{
+  const PetscInt last = solver->num_history - 1;
+
+  if (last < 1 || !(solver->settings.energy_atol > 0.)) return PETSC_FALSE;
+  return (PetscBool)(solver->objectives[last - 1] - solver->objectives[last] <= solver->settings.energy_atol);
+}
+
 /* Is the map so far from equal areas that it is of no use as such? */
 static PetscBool IsPoor(EqmSolver solver)
 {
@@ -106,6 +116,14 @@ PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop)
                             "the objective fell by less than %g %% per iteration over the last %" PetscInt_FMT
                             " iterations",
                             100. * (double)solver->settings.energy_rtol, solver->settings.stagnation));
+    RejectPoorMap(solver);
+    PetscFunctionReturn(0);
+  }
+  *stop = StandsStill(solver);
+  if (*stop) {
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
+                            "the objective fell by no more than %g in the last iteration",
+                            (double)solver->settings.energy_atol));
     RejectPoorMap(solver);
     PetscFunctionReturn(0);
   }

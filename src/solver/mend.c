@@ -33,18 +33,30 @@ PetscErrorCode EqmSolverHasCollapsed(EqmSolver solver, PetscBool *collapsed)
 
   PetscFunctionBegin;
   *collapsed = PETSC_FALSE;
-  if (solver->mesh->cell_size == 3 || solver->iterate->totals.total >= LeastVolume(solver)) PetscFunctionReturn(0);
+  if (solver->mesh->cell_size == 3 || solver->problem->unfolding != EQM_UNFOLD_AUTO ||
+      solver->iterate->totals.total >= LeastVolume(solver))
+    PetscFunctionReturn(0);
   PetscCall(CountFolds(solver, &folds));
   *collapsed = (PetscBool)(folds > solver->iterate->totals.folds);
   PetscFunctionReturn(0);
 }
 
+/* How folds are mended; NULL: not at all. */
+static EqmUnfold FindUnfold(EqmSolver solver)
+{
+  const EqmUnfolding how = solver->problem->unfolding;
+
+  if (how == EQM_UNFOLD_PAPER) return solver->formulation->unfold_as_printed;
+  return how == EQM_UNFOLD_AUTO ? solver->formulation->unfold : NULL;
+}
+
 static PetscErrorCode Unfold(EqmSolver solver, const char *when)
 {
+  const EqmUnfold unfold = FindUnfold(solver);
   EqmIterate const iterate = solver->iterate;
 
   PetscFunctionBegin;
-  PetscCall(solver->formulation->unfold(solver->problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+  PetscCall(unfold(solver->problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
   PetscCall(EqmIterateUpdate(solver->problem, iterate));
   PetscCall(EqmSolverNotifyUnfolded(solver, when));
   PetscFunctionReturn(0);
@@ -65,19 +77,21 @@ PetscErrorCode EqmSolverBeginAgain(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSolverMend(EqmSolver solver)
+PetscErrorCode EqmSolverMend(EqmSolver solver, const char *when, PetscBool *unfolded)
 {
   PetscBool stop = PETSC_FALSE;
   PetscInt64 folds;
 
   PetscFunctionBegin;
-  if (!solver->formulation->unfold) PetscFunctionReturn(0);
+  *unfolded = PETSC_FALSE;
+  if (!FindUnfold(solver)) PetscFunctionReturn(0);
   PetscCall(CountFolds(solver, &folds));
   if (folds == 0) PetscFunctionReturn(0);
   PetscCall(EqmCheckpointStopRequested(solver, &stop));
   if (stop) PetscFunctionReturn(0);
   PetscCall(EqmPhaseBegin(solver->mesh->ledger, EQM_PHASE_MINIMISE));
-  PetscCall(Unfold(solver, "at the end"));
+  PetscCall(Unfold(solver, when));
   PetscCall(EqmPhaseEnd(solver->mesh->ledger, EQM_PHASE_MINIMISE));
+  *unfolded = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

@@ -9,7 +9,7 @@ PETSC_INTERN PetscErrorCode EqmSolverHasCollapsed(EqmSolver solver, PetscBool *c
 /* In place of a collapsed map: the first one once more, unfolded and brought down as far as a barrier and the volume
    of the image allow; the next iteration's number. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverBeginAgain(EqmSolver solver);
-/* Mend the folds that there are, of cells and of a solid's boundary, if the formulation knows how. Collective. */
-PETSC_INTERN PetscErrorCode EqmSolverMend(EqmSolver solver);
+/* Mend folds of the present map, if there are any and -unfold does not forbid it; `when` is for people. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverMend(EqmSolver solver, const char *when, PetscBool *unfolded);
 
 #endif

@@ -25,6 +25,7 @@ static PetscErrorCode Check(MPI_Comm comm, const EqmSolverSettings *set)
 {
   PetscFunctionBegin;
   if (set->max_it < -1) EqmFail(comm, EQM_ERR_USAGE, "-max_it %" PetscInt_FMT ": give 0 or more", set->max_it);
+  if (set->energy_atol < 0.) EqmFail(comm, EQM_ERR_USAGE, "-energy_atol %g: give 0 or more", (double)set->energy_atol);
   if (set->wall_time < 0.)
     EqmFail(comm, EQM_ERR_USAGE, "-wall_time %g: give a number of seconds, 0 for no limit", (double)set->wall_time);
   if (set->checkpoint_every < -1)
@@ -74,6 +75,10 @@ static PetscErrorCode ReadTolerances(EqmSolverSettings *set, PetscOptionItems *P
                              "converged when the objective falls by less than this share per iteration, over some "
                              "iterations (-1: the method's own, 0: never)",
                              "EqmSolverSetFromOptions", set->energy_rtol, &set->energy_rtol, NULL));
+  PetscCall(PetscOptionsReal("-energy_atol",
+                             "converged when the objective falls by no more than this in an iteration, the epsilon of "
+                             "the papers' algorithms (0: off)",
+                             "EqmSolverSetFromOptions", set->energy_atol, &set->energy_atol, NULL));
   PetscCall(
       PetscOptionsReal("-ratio_tol",
                        "converged when the root mean square of ratio - 1 is no larger than this (-1: the method's own, "
@@ -107,6 +112,7 @@ static PetscErrorCode ReadCorners(EqmSolver solver, PetscOptionItems *PetscOptio
 
 static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOptionsObject)
 {
+  static const char *const unfoldings[] = {"auto", "paper", "none"}; /* as EqmUnfolding */
   EqmSolverSettings *const set = &solver->settings;
   char methods[EQM_MESSAGE_MAX] = "the iteration: ";
   PetscBool monitor = PETSC_FALSE;
@@ -131,6 +137,11 @@ static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOption
                                "EqmSolverMonitorText", monitor, &monitor, NULL));
   }
   if (monitor && !solver->monitor) PetscCall(EqmSolverSetMonitor(solver, EqmSolverMonitorText, NULL));
+  PetscCall(PetscOptionsEList("-unfold",
+                              "what is done about folds: auto, all that this program can; paper, the correction of 001 "
+                              "section 6.2 once (sphere; elsewhere the papers have none); none",
+                              "EqmSolverSetFromOptions", unfoldings, 3, unfoldings[set->unfolding], &set->unfolding,
+                              NULL));
   if (!strcmp(solver->formulation->domain, "square")) PetscCall(ReadCorners(solver, PetscOptionsObject));
   if (!strcmp(solver->target, "disk"))
     PetscCall(
@@ -271,8 +282,14 @@ PetscErrorCode EqmSolverResolveSettings(EqmSolver solver)
 
 PetscErrorCode EqmSolverCheckLandmarkSupport(EqmSolver solver)
 {
+  const PetscBool held =
+      (PetscBool)(!strcmp(solver->defaults.method, "fixed-point") && strcmp(solver->formulation->domain, "disk"));
+
   PetscFunctionBegin;
-  if (!solver->method->takes_terms)
+  if (held)
+    EqmFail(solver->comm, EQM_ERR_USAGE,
+            "-method fixed-point draws landmarks together on the disk only (000 (49)); take lm, lbfgs, ncg or rgd");
+  if (!solver->method->takes_landmarks && !solver->method->takes_terms)
     EqmFail(solver->comm, EQM_ERR_USAGE, "-method %s cannot draw landmarks together; take lm, or lbfgs, ncg or rgd",
             solver->defaults.name);
   PetscFunctionReturn(0);

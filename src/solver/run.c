@@ -9,6 +9,7 @@
 static PetscErrorCode SetUpMethod(EqmSolver solver)
 {
   PetscFunctionBegin;
+  solver->iterate->figures = EQM_STEP_UNKNOWN;
   PetscCall(EqmMethodSetUp(solver->method, solver->problem, solver->iterate));
   PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_BEGIN, solver->problem->linear_solver));
   if (solver->checkpoints.open)
@@ -31,6 +32,7 @@ static PetscErrorCode HasOneMap(EqmSolver solver, PetscBool *has_one)
   PetscCall(PetscStrncpy(solver->message, "every vertex is held: there is one map", sizeof(solver->message)));
   solver->iterate->objective = solver->iterate->totals.energy;
   solver->iterate->gradient_norm = -1.;
+  solver->iterate->figures = EQM_STEP_UNKNOWN;
   PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_BEGIN, ""));
   PetscCall(EqmHistoryAddRow(solver));
   PetscFunctionReturn(0);
@@ -49,6 +51,8 @@ static PetscErrorCode Iterate(EqmSolver solver)
   while (!stop && !solver->checkpoints.finished) {
     EqmStep outcome;
     PetscCall(EqmCheckpointIfDue(solver));
+    iterate->figures = EQM_STEP_UNKNOWN;
+    iterate->unfolded_from = 0;
     PetscCall(EqmMethodStep(solver->method, iterate, &outcome));
     if (outcome != EQM_STEP_TAKEN) {
       PetscCall(EqmJudgeEnd(solver, outcome));
@@ -88,9 +92,12 @@ static PetscErrorCode IterateAgain(EqmSolver solver)
 /* The formulation's final normalisation, then unfolding where there is a method for it. */
 static PetscErrorCode End(EqmSolver solver)
 {
+  PetscBool unfolded;
+
   PetscFunctionBegin;
   if (solver->formulation->finish) PetscCall(solver->formulation->finish(solver));
-  PetscCall(EqmSolverMend(solver));
+  PetscCall(EqmSolverMend(solver, "at the end", &unfolded));
+  if (unfolded) PetscCall(EqmHistoryAddRow(solver));
   if (solver->status != EQM_STATUS_STOPPED) PetscCall(EqmJudgeFolds(solver));
   PetscFunctionReturn(0);
 }

@@ -51,15 +51,20 @@ static PetscErrorCode StopRequested(void *context, PetscBool *stop)
 static PetscErrorCode CreateProblem(EqmSolver solver)
 {
   const EqmSolverSettings *const set = &solver->settings;
-  const EqmDomainOptions options = {.corners = set->has_corners ? set->corners : NULL,
-                                    .boundary_angles = set->boundary_angles[0] ? set->boundary_angles : NULL};
+  EqmDomainOptions options = {.corners = set->has_corners ? set->corners : NULL,
+                              .boundary_angles = set->boundary_angles[0] ? set->boundary_angles : NULL};
+  PetscReal *angles;
   EqmDomain domain;
 
   PetscFunctionBegin;
+  PetscCall(EqmSolverHeldAngles(solver, &angles));
+  options.held_angles = angles;
   PetscCall(EqmDomainCreate(solver->mesh,
                             solver->defaults.domain ? solver->defaults.domain : solver->formulation->domain, &options,
                             &domain));
+  PetscCall(PetscFree(angles));
   PetscCall(EqmProblemCreate(domain, solver->objective, &solver->problem));
+  solver->problem->unfolding = (EqmUnfolding)set->unfolding;
   PetscCall(PetscStrncpy(solver->problem->prefix, solver->prefix, sizeof(solver->problem->prefix)));
   solver->problem->notify = EqmSolverNotify;
   solver->problem->stop_requested = StopRequested;
@@ -99,6 +104,7 @@ static PetscErrorCode SetSurfaceDefaults(EqmSolver solver, EqmSolver sphere)
   PetscCall(EqmSolverSetOptionsPrefix(sphere, EQM_BOUNDARY_PREFIX));
   PetscCall(EqmSolverSetTolerances(sphere, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, by_fixed_point ? 10 : 60));
   if (by_fixed_point) PetscCall(EqmSolverSetMethod(sphere, solver->defaults.name));
+  sphere->settings.unfolding = solver->settings.unfolding;
   PetscCall(PetscOptionsHasName(NULL, EQM_BOUNDARY_PREFIX, "-max_it", &limited));
   if (!by_fixed_point && !limited) /* a longer run would amplify rounding errors of the input */
     PetscCall(EqmSolverSetTolerances(sphere, PETSC_DEFAULT, .01, PETSC_DEFAULT, PETSC_DEFAULT));

@@ -13,10 +13,12 @@ typedef struct {
   char objective[32]; /* empty: the formulation's */
   EqmStartOptions start;
   PetscInt max_it, max_factorizations;
-  PetscReal energy_rtol, ratio_tol, energy_target, gradient_tol, wall_time, balance;
+  PetscReal energy_rtol, energy_atol, ratio_tol, energy_target, gradient_tol, wall_time, balance;
   PetscInt stagnation;  /* iterations that energy_rtol refers to */
   PetscInt inner_steps; /* of lm, before its options are read */
+  PetscInt unfolding;   /* an EqmUnfolding */
   PetscBool quiet, has_corners;
+  PetscBool hold_boundary; /* disk: where the first map has it */
   PetscInt corners[4];
   char boundary_angles[PETSC_MAX_PATH_LEN];                         /* disk: a file; empty: none */
   char checkpoint[PETSC_MAX_PATH_LEN], restart[PETSC_MAX_PATH_LEN]; /* empty: none */
@@ -67,6 +69,8 @@ PETSC_INTERN PetscErrorCode EqmSolverResolveSettings(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverListOptions(EqmSolver solver);
 /* ---- first_map.c: the first map: one that was given, or a start's. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverMakeFirstMap(EqmSolver solver);
+/* ---- held.c: the angles that hold the boundary, per local vertex; NULL: nothing holds it. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverHeldAngles(EqmSolver solver, PetscReal **angles);
 /* ---- history.c */
 PETSC_INTERN PetscErrorCode EqmHistoryReserve(EqmSolver solver, PetscInt rows);
 /* Add a row for the present map and call the monitor. Collective. */
@@ -84,6 +88,8 @@ PETSC_INTERN PetscErrorCode EqmSolverTryOtherStarts(EqmSolver solver);
 PETSC_INTERN PetscBool EqmSolverIsBlocked(EqmSolver solver);
 /* ---- run.c: from the first map to the end of iterations and unfolding. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverRun(EqmSolver solver);
+/* ---- hessian_stretch.c: the Hessian of a^2/area of one triangle (001 Appendix B). Not collective. */
+PETSC_INTERN void EqmStretchHessian(const PetscReal *const p[3], PetscReal area, PetscReal matrix[81]);
 /* ---- intrinsic.c: the second attempt of EqmSolverSolve. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverStraighten(EqmSolver solver);
 

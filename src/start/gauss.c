@@ -114,7 +114,7 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   PetscFunctionBegin;
   PetscCall(EqmSphereGauss(problem, iterate, options->steps));
   if (options->steps == 0) PetscFunctionReturn(0);
-  PetscCall(EqmSphereUnfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+  PetscCall(EqmSphereUnfoldFirstMap(problem, iterate));
   PetscFunctionReturn(0);
 }
 

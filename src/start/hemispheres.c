@@ -312,7 +312,7 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
             "-start tutte: no closed curve was found that cuts the surface in two disks; leave -start out");
   }
   for (PetscInt k = 0; k < options->steps; k++) PetscCall(EqmSphereFixedPointStep(problem, iterate, k, weights));
-  PetscCall(EqmSphereUnfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+  PetscCall(EqmSphereUnfoldFirstMap(problem, iterate));
   PetscCall(PetscFree(weights));
   PetscFunctionReturn(0);
 }

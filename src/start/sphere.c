@@ -158,7 +158,7 @@ static PetscErrorCode RunDescending(EqmProblem problem, EqmIterate iterate, cons
     PetscCall(EqmPlaceCopy(problem->domain, &last, &iterate->place));
     break;
   }
-  PetscCall(EqmSphereUnfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+  PetscCall(EqmSphereUnfoldFirstMap(problem, iterate));
   PetscCall(EqmPlaceDestroy(&last));
   PetscCall(PetscFree(weights));
   PetscFunctionReturn(0);
@@ -180,7 +180,7 @@ const EqmStartType EqmStartSphereFixedPoint = {EQM_STARTS_SPHERE, "fixed-point",
                                                "linear, then fixed-point steps (001 Algorithm 2)", 10, RunLinear};
 const EqmStartType EqmStartSphereDescending = {
     EQM_STARTS_SPHERE, "descending",
-    "linear, then fixed-point steps for as long as the energy falls, seven at most (001 section 6.3)", 7,
+    "linear, then fixed-point steps for as long as the energy falls, -start_steps at most (001 section 6.3)", 100,
     RunDescending};
 const EqmStartType EqmStartSphereConformal = {EQM_STARTS_SPHERE, "conformal",
                                               "linear, then the Mobius map that brings its mass centre to the sphere's",

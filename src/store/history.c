@@ -1,20 +1,21 @@
 /* The history of a run as CSV: a header and one row per iteration. */
 #include "store/map_private.h"
 #include "mesh/soup_private.h"
+#include "store/columns.h"
 #include "store/store.h"
 #include "base/atomicfile.h"
 
 static void PrintRow(EqmAtomicFile *file, const EqmHistoryRow *row)
 {
-  const PetscReal quality[2] = {row->energy, row->sd}, step[2] = {row->step, row->gradient_norm};
-
-  EqmAtomicPrint(file, "%" PetscInt_FMT ",", row->iteration);
-  EqmAtomicPrintReals(file, 2, quality, ',');
-  EqmAtomicPrint(file, ",%" PetscInt64_FMT ",", row->folds);
-  EqmAtomicPrintReals(file, 2, step, ',');
-  EqmAtomicPrint(file, ",%" PetscInt64_FMT ",%" PetscInt64_FMT ",%" PetscInt64_FMT ",%" PetscInt64_FMT ",",
-                 row->work.evaluations, row->work.factorizations, row->work.coupled_factorizations, row->work.solves);
-  EqmAtomicPrintReals(file, 1, &row->seconds, ',');
+  EqmAtomicPrint(file, "%" PetscInt_FMT, row->iteration);
+  for (int k = 0; k < EQM_NUM_HISTORY_COLUMNS; k++) {
+    const EqmHistoryColumn *const column = &EqmHistoryColumns[k];
+    EqmAtomicPrint(file, ",");
+    if (column->is_count)
+      EqmAtomicPrint(file, "%" PetscInt64_FMT, *(const PetscInt64 *)EqmHistoryEntry(row, column));
+    else
+      EqmAtomicPrintReals(file, 1, EqmHistoryEntry(row, column), ',');
+  }
   EqmAtomicPrint(file, "\n");
 }
 
@@ -22,8 +23,9 @@ static void PrintHistory(EqmAtomicFile *file, void *context)
 {
   const EqmMap map = context;
 
-  EqmAtomicPrint(file, "iteration,energy,sd,folds,step,gradient_norm,evaluations,factorizations,"
-                       "coupled_factorizations,solves,seconds\n");
+  EqmAtomicPrint(file, "iteration");
+  for (int k = 0; k < EQM_NUM_HISTORY_COLUMNS; k++) EqmAtomicPrint(file, ",%s", EqmHistoryColumns[k].name);
+  EqmAtomicPrint(file, "\n");
   for (PetscInt i = 0; i < map->num_history; i++) PrintRow(file, &map->history[i]);
 }
 

@@ -18,14 +18,7 @@ static EqmSlab CellSlab(EqmSoup soup, PetscInt width)
   return slab;
 }
 
-/* The history is the same everywhere: rank 0 writes it. */
-static EqmSlab HistorySlab(EqmMap map, PetscMPIInt rank)
-{
-  const EqmSlab slab = {map->num_history, 0, rank == 0 ? map->num_history : 0, 0};
-  return slab;
-}
-
-/* So are the Hessian's eigenvalues. */
+/* The Hessian's eigenvalues are the same everywhere: rank 0 writes them. */
 static EqmSlab HessianSlab(EqmMap map, PetscMPIInt rank)
 {
   const EqmSlab slab = {map->num_hessian_eigenvalues, 0, rank == 0 ? map->num_hessian_eigenvalues : 0, 0};
@@ -35,18 +28,7 @@ static EqmSlab HessianSlab(EqmMap map, PetscMPIInt rank)
 static const struct {
   const char *path;
   size_t offset;
-} history_reals[] = {{"/history/energy", offsetof(EqmHistoryRow, energy)},
-                     {"/history/sd", offsetof(EqmHistoryRow, sd)},
-                     {"/history/step", offsetof(EqmHistoryRow, step)},
-                     {"/history/gradient_norm", offsetof(EqmHistoryRow, gradient_norm)},
-                     {"/history/seconds", offsetof(EqmHistoryRow, seconds)}},
-  history_counts[] = {{"/history/folds", offsetof(EqmHistoryRow, folds)},
-                      {"/history/evaluations", offsetof(EqmHistoryRow, work) + offsetof(EqmWork, evaluations)},
-                      {"/history/factorizations", offsetof(EqmHistoryRow, work) + offsetof(EqmWork, factorizations)},
-                      {"/history/coupled_factorizations",
-                       offsetof(EqmHistoryRow, work) + offsetof(EqmWork, coupled_factorizations)},
-                      {"/history/solves", offsetof(EqmHistoryRow, work) + offsetof(EqmWork, solves)}},
-  map_reals[] = {{"energy_initial", offsetof(struct _p_EqmMap, energy_initial)},
+} map_reals[] = {{"energy_initial", offsetof(struct _p_EqmMap, energy_initial)},
                  {"energy_final", offsetof(struct _p_EqmMap, energy_final)},
                  {"mesh_measure", offsetof(struct _p_EqmMap, distortion.mesh_measure)},
                  {"image_measure", offsetof(struct _p_EqmMap, distortion.image_measure)},
@@ -131,11 +113,7 @@ static PetscErrorCode DeclareArrays(EqmH5 h5, EqmMap map)
   if (soup->cell_size == 3) PetscCall(DeclareAngles(h5, soup));
   if (soup->density) PetscCall(EqmH5DeclareReals(h5, "/cell/density", soup->num_cells, 0));
   PetscCall(EqmSoupDeclareFieldsHdf5(h5, soup, PETSC_TRUE));
-  PetscCall(EqmH5DeclareIntegers(h5, "/history/iteration", map->num_history, 0));
-  for (int k = 0; k < LENGTH(history_reals); k++)
-    PetscCall(EqmH5DeclareReals(h5, history_reals[k].path, map->num_history, 0));
-  for (int k = 0; k < LENGTH(history_counts); k++)
-    PetscCall(EqmH5DeclareIntegers(h5, history_counts[k].path, map->num_history, 0));
+  PetscCall(EqmResultDeclareHistory(h5, map));
   if (map->num_hessian_eigenvalues)
     PetscCall(EqmH5DeclareReals(h5, "/map/hessian_eigenvalues", map->num_hessian_eigenvalues, 0));
   if (map->repaired) PetscCall(DeclareRepaired(h5, map->repaired));
@@ -251,34 +229,6 @@ static PetscErrorCode WriteRepaired(EqmH5 h5, EqmMap repaired, const PetscInt *p
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteHistory(EqmH5 h5, EqmMap map)
-{
-  const EqmSlab slab = HistorySlab(map, h5->rank);
-  PetscErrorCode error;
-  PetscReal *reals;
-  PetscInt64 *counts;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc2(map->num_history, &reals, map->num_history, &counts));
-  for (PetscInt i = 0; i < map->num_history; i++) counts[i] = map->history[i].iteration;
-  error = EqmH5WriteIntegers(h5, "/history/iteration", slab, counts);
-  for (int k = 0; k < LENGTH(history_reals) && !error; k++) {
-    for (PetscInt i = 0; i < map->num_history; i++) {
-      reals[i] = *(const PetscReal *)((const char *)&map->history[i] + history_reals[k].offset);
-    }
-    error = EqmH5WriteReals(h5, history_reals[k].path, slab, reals);
-  }
-  for (int k = 0; k < LENGTH(history_counts) && !error; k++) {
-    for (PetscInt i = 0; i < map->num_history; i++) {
-      counts[i] = *(const PetscInt64 *)((const char *)&map->history[i] + history_counts[k].offset);
-    }
-    error = EqmH5WriteIntegers(h5, history_counts[k].path, slab, counts);
-  }
-  PetscCall(PetscFree2(reals, counts));
-  PetscCall(error);
-  PetscFunctionReturn(0);
-}
-
 /* What the command has added. */
 static PetscErrorCode WriteExtras(EqmH5 h5, EqmMap map)
 {
@@ -306,8 +256,8 @@ static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5WriteReals(h5, "/vertex/ratio", VertexSlab(soup, 0), map->vertex_ratio));
   if (soup->cell_size == 3) PetscCall(WriteAngles(h5, map));
   if (soup->density) PetscCall(EqmH5WriteReals(h5, "/cell/density", CellSlab(soup, 0), soup->density));
-  PetscCall(EqmSoupWriteFieldsHdf5(h5, soup, PETSC_TRUE));
-  PetscCall(WriteHistory(h5, map));
+  PetscCall(EqmSoupDeclareFieldsHdf5(h5, soup, PETSC_TRUE));
+  PetscCall(EqmResultWriteHistory(h5, map));
   if (map->num_hessian_eigenvalues)
     PetscCall(EqmH5WriteReals(h5, "/map/hessian_eigenvalues", HessianSlab(map, h5->rank), map->hessian_eigenvalues));
   if (map->repaired) PetscCall(WriteRepaired(h5, map->repaired, map->parent));

@@ -20,6 +20,9 @@ PETSC_INTERN PetscErrorCode EqmNameBeside(const char *file, const char *suffix, 
 PETSC_INTERN PetscReal EqmRatioEdge(const EqmDistortion *distortion, PetscInt bin);
 /* Write the result file: everything about the map. Collective. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteResult(EqmMap map, const char *file);
+/* Its part that holds the history. Collective. Errors: EQM_ERR_IO. */
+PETSC_INTERN PetscErrorCode EqmResultDeclareHistory(EqmH5 h5, EqmMap map);
+PETSC_INTERN PetscErrorCode EqmResultWriteHistory(EqmH5 h5, EqmMap map);
 /* Write NAME.xmf, the mesh, and NAME.map.xmf, its image, beside the result NAME.h5 for ParaView. Collective; rank 0
  * writes. Errors: EQM_ERR_IO. */
 PETSC_INTERN PetscErrorCode EqmMapWriteXdmf(EqmMap map, const char *result_file);

@@ -119,6 +119,36 @@ static void AddAngle(cJSON *object, const char *key, PetscBool known, PetscReal 
     (void)cJSON_AddNullToObject(object, key);
 }
 
+/* Folds mended: in the first map, row 0 of the history, and at the end, a row after the last iteration. */
+static void AddUnfolded(cJSON *root, EqmMap map)
+{
+  const EqmHistoryRow none = {0};
+  const EqmHistoryRow *const first = map->num_history ? &map->history[0] : &none;
+  const EqmHistoryRow *const last = map->num_history > 1 ? &map->history[map->num_history - 1] : &none;
+  cJSON *const group = cJSON_AddObjectToObject(root, "unfolded");
+
+  AddCount(group, "before", last->unfolded_from);
+  AddCount(group, "after", last->unfolded_from ? last->folds + map->boundary_folds : 0);
+  AddCount(group, "start_before", first->unfolded_from);
+  AddCount(group, "start_after", first->unfolded_from ? first->folds : 0);
+}
+
+/* How many iterations each phase took, for methods that have them. */
+static void AddPhases(cJSON *root, EqmMap map)
+{
+  cJSON *group = NULL;
+  PetscInt64 phase = 0;
+
+  for (PetscInt k = 0; k < map->num_history; k++) phase = PetscMax(phase, map->history[k].phase);
+  if (phase == 0) return;
+  group = cJSON_AddArrayToObject(root, "phases");
+  for (PetscInt64 p = 1; p <= phase; p++) {
+    PetscInt64 iterations = 0;
+    for (PetscInt k = 1; k < map->num_history; k++) iterations += map->history[k].phase == p;
+    (void)cJSON_AddItemToArray(group, cJSON_CreateNumber((double)iterations));
+  }
+}
+
 static void AddQuality(cJSON *root, EqmMap map)
 {
   const EqmDistortion *distortion = &map->distortion;
@@ -129,6 +159,8 @@ static void AddQuality(cJSON *root, EqmMap map)
   group = cJSON_AddObjectToObject(root, "energy");
   AddNumber(group, "initial", map->energy_initial);
   AddNumber(group, "final", map->energy_final);
+  AddNumber(group, "stretch", distortion->energy + distortion->image_measure); /* 002: at least the bound */
+  AddNumber(group, "bound", distortion->image_measure);
   group = cJSON_AddObjectToObject(root, "ratio");
   AddNumber(group, "mean", distortion->ratio.mean);
   AddNumber(group, "sd", distortion->ratio.sd);
@@ -231,6 +263,8 @@ static char *MakeSummary(EqmMap map)
   if (map->num_prepared) AddPrepared(root, map);
   if (map->repaired) AddRepair(root, &map->repair);
   AddQuality(root, map);
+  AddUnfolded(root, map);
+  AddPhases(root, map);
   if (map->hessian_eigenvalues) AddHessian(root, map);
   for (PetscInt k = 0; k < map->num_figures; k++) AddFigure(root, &map->figures[k]);
   AddCost(root, map);

@@ -212,3 +212,37 @@ PetscErrorCode EqmSphereUnfold(EqmProblem problem, EqmIterate iterate, PetscInt6
   PetscCall(PetscFree(det));
   PetscFunctionReturn(0);
 }
+
+/* The correction as printed (001 section 6.2): the southern hemisphere and a little more by (6.2), and after the
+   inversion (6.4) the northern one, once each; what comes of it is taken. */
+PetscErrorCode EqmSphereUnfoldAsPrinted(EqmProblem problem, EqmIterate iterate, PetscInt64 *before, PetscInt64 *after)
+{
+  static const PetscReal poles[2][3] = {{0., 0., -1.}, {0., 0., 1.}};
+  Unfold unfold;
+  PetscReal *det;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(problem->mesh->num_local_cells, &det));
+  PetscCall(EqmImageFolds(problem->domain, &iterate->place, det, before));
+  *after = *before;
+  if (*before > 0) {
+    PetscCall(UnfoldCreate(problem->mesh, &unfold));
+    for (int k = 0; k < 2; k++) PetscCall(StraightenCap(problem, iterate, &unfold, poles[k], 1.2));
+    PetscCall(EqmImageFolds(problem->domain, &iterate->place, det, after));
+    PetscCall(EqmPlaceMakeFrames(problem->domain, &iterate->place));
+    PetscCall(UnfoldDestroy(&unfold));
+  }
+  PetscCall(PetscFree(det));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSphereUnfoldFirstMap(EqmProblem problem, EqmIterate iterate)
+{
+  PetscErrorCode (*const unfold)(EqmProblem, EqmIterate, PetscInt64 *, PetscInt64 *) =
+      problem->unfolding == EQM_UNFOLD_PAPER ? EqmSphereUnfoldAsPrinted : EqmSphereUnfold;
+
+  PetscFunctionBegin;
+  if (problem->unfolding == EQM_UNFOLD_NONE) PetscFunctionReturn(0);
+  PetscCall(unfold(problem, iterate, &iterate->unfolded_from, &iterate->unfolded_to));
+  PetscFunctionReturn(0);
+}

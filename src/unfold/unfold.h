@@ -13,6 +13,10 @@ PETSC_INTERN PetscErrorCode EqmSphereUnfold(EqmProblem problem, EqmIterate itera
 /* Disk and square, boundary held: what is far from the folds stays as it is. */
 PETSC_INTERN PetscErrorCode EqmPlaneUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
                                            PetscInt64 *after);
+PETSC_INTERN PetscErrorCode EqmSphereUnfoldAsPrinted(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
+                                                     PetscInt64 *after);
+/* Unfold a first map as problem->unfolding has it, and note the folds in the iterate. */
+PETSC_INTERN PetscErrorCode EqmSphereUnfoldFirstMap(EqmProblem problem, EqmIterate iterate);
 /* Requests to stop are checked between rounds (EqmProblemStopRequested). */
 PETSC_INTERN PetscErrorCode EqmBallUnfold(EqmProblem problem, EqmIterate iterate, PetscInt64 *before,
                                           PetscInt64 *after);

@@ -70,7 +70,8 @@ def main(program):
     known = set()
     for preset in sorted(CONFIG.glob("*/*.yaml")):  # of those with the same options, one is tried
         command, options = read_row(preset)
-        mesh = {"sphere": "head.obj", "conformal": "head.obj", "ball": "ball.h5"}.get(command, "patch.obj")
+        closed = "head.obj" if options["start"] != "harmonic" else "patch.obj"  # Riemann maps begin with the harmonic one
+        mesh = {"sphere": "head.obj", "conformal": closed, "ball": "ball.h5"}.get(command, "patch.obj")
         if (command, *options.items()) in known or program.ranks != 1:
             continue
         known.add((command, *options.items()))

@@ -182,6 +182,50 @@ def check_ball(program):
     assert summary["register"]["dissimilarity_rigid"] > 1e-2, "the pose of a turned solid is another one"
     file.close()
     check_folded_solid(program, vertices, cells)
+    check_solid_landmarks(program, vertices, cells)
+
+
+def check_published(program):
+    """000 section 6: the boundary held where the best rotation puts it, landmarks drawn by (49) or by conjugate gradients."""
+    vertices, cells = generate(program, "hills", 600)
+    program.succeed("disk", "hills.obj", "-o", "f.h5", "-quiet")
+    with h5py.File(program.file("f.h5"), "r") as file:
+        places = file["/map/coordinates"][...]
+    inside = numpy.flatnonzero(numpy.linalg.norm(places, axis=1) < .7)[::40]
+    goals = places[inside] + .03 * numpy.stack([numpy.cos(5 * places[inside, 1]), numpy.sin(4 * places[inside, 0])], axis=1)
+    goals = goals @ numpy.array([[0., -1.], [1., 0.]]).T
+    program.write("goals.csv", "a,x,y\n" + "".join(f"{v},{x!r},{y!r}\n" for v, (x, y) in zip(inside.tolist(), goals.tolist())))
+    rim = numpy.unique(boundary_edges(cells))
+    for method, weight in (("fixed-point", 3), ("ncg", .3)):
+        summary, file = run(program, "f.h5", "target", "-landmarks", "goals.csv", "-quiet", "-method", method, "-landmark_weight",
+                            weight, "-landmark_stages", 1, "-landmark_tol", .02, "-max_it", 60)
+        h = file["/register/target"][...]
+        figures = summary["register"]
+        turned = (h[rim, 0] + 1j * h[rim, 1]) / (places[rim, 0] + 1j * places[rim, 1])
+        assert abs(turned - turned[0]).max() < 1e-12 and abs(turned[0] - 1j) < .1, "the boundary is that of f, rotated"
+        assert figures["landmarks"]["error"]["max"] <= .02 and summary["folds"] == 0
+        assert numpy.linalg.norm(h[inside] - goals, axis=1).max() <= .02
+        area = lambda x: numpy.cross(x[cells[:, 1]] - x[cells[:, 0]], x[cells[:, 2]] - x[cells[:, 0]]) / 2.  # noqa: E731
+        before, after = area(places), area(h)
+        ratio = after / before * before.sum() / after.sum()
+        own = after.sum() * (before / before.sum() * (ratio - 1.) ** 2).sum()
+        assert abs(figures["h"]["energy"] - own) < 1e-9 and own < .1, (figures["h"], own)
+        file.close()
+
+
+def check_solid_landmarks(program, vertices, cells):
+    """Landmarks of solids meet, without folds; the surface's vertices stay on the sphere."""
+    inside = numpy.flatnonzero(numpy.linalg.norm(vertices, axis=1) < .7)[::25]
+    goals = vertices[inside] + .03 * numpy.sin(4 * vertices[inside][:, [1, 2, 0]])
+    with h5py.File(program.file("landmarks.h5"), "w") as file:
+        file["/mesh/vertices"], file["/mesh/cells"], file["/map/coordinates"] = vertices, cells.astype("int64"), vertices
+    program.write("solid.csv", "a,x,y,z\n" + "".join(f"{v},{x!r},{y!r},{z!r}\n" for v, (x, y, z) in zip(inside.tolist(), goals.tolist())))
+    summary, file = run(program, "landmarks.h5", "landmarks.h5", "-landmarks", "solid.csv", "-quiet", "-max_it", 200, codes=(0, 4))
+    assert summary["register"]["landmarks"]["error"]["max"] <= 1e-3 and summary["register"]["folds"] == 0, summary["register"]
+    places = file["/register/target"][...]
+    on_sphere = abs(numpy.linalg.norm(vertices, axis=1) - 1.) < 1e-12
+    assert abs(numpy.linalg.norm(places[on_sphere], axis=1) - 1.).max() < 1e-12
+    file.close()
 
 
 def count_folds(points, cells):
@@ -257,7 +301,7 @@ def check_refused(program):
         (6, "numbers are wanted", *both, "-transfer", "text.csv"),
         (6, "missing.csv", *both, "-transfer", "missing.csv"),
         (2, "wants a mesh for B", "hills.obj", "target", *landmarks("flat"), "-transfer", "coordinates"),
-        (2, "cannot draw landmarks", *both, *landmarks("pair"), "-method", "fixed-point"),
+        (2, "on the disk only", *closed, *landmarks("pair"), "-method", "fixed-point"),
         (2, "midpoints", *both, "-register_by", "midpoints"),
         (2, "midpoints", *both, "-register_by", "midpoints", *landmarks("flat")),
         (2, "-frames 1", *both, "-frames", 1),
@@ -276,8 +320,8 @@ def check_refused(program):
 
 def main():
     equimap, ranks = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1
-    for check in (lambda p: check_copy(p, "hills", 1000), lambda p: check_copy(p, "head", 1000), check_landmarks, check_sphere, check_ball,
-                  check_refused):
+    for check in (lambda p: check_copy(p, "hills", 1000), lambda p: check_copy(p, "head", 1000), check_landmarks, check_published,
+                  check_sphere, check_ball, check_refused):
         with tempfile.TemporaryDirectory() as folder:
             check(Program(equimap, ranks, folder))
     print("equimap register: copies, landmarks, spheres, solids, fields, frames, refusals: fine")

@@ -328,22 +328,54 @@ static PetscErrorCode CheckProof(const Ncg *ncg)
   PetscFunctionReturn(0);
 }
 
-/* The library's ncg without safeguard takes the same steps. */
+/* The house's ncg, told to do as printed, takes the same steps, and its history has ||g|| in M^-1. */
 static PetscErrorCode CheckHouse(EqmMesh mesh, const Ncg *ncg)
 {
   char options[128];
   EqmSolver solver;
 
   PetscFunctionBegin;
-  PetscCall(
-      PetscSNPrintf(options, sizeof(options), "-method ncg -ncg_guard false -max_it %d -energy_rtol 0", NCG_STEPS));
+  PetscCall(PetscSNPrintf(options, sizeof(options), "-method ncg -ncg_line_search printed -max_it %d -energy_rtol 0",
+                          NCG_STEPS));
   PetscCall(TestSolve(mesh, "disk", options, &solver));
   CHECK(solver->num_history == NCG_STEPS + 1, "%d rows", (int)solver->num_history);
   for (PetscInt k = 0; k <= NCG_STEPS; k++) {
     CHECK_CLOSE(solver->history[k].energy, ncg->energy[k], 1e-6, ncg->energy[k]);
     if (k > 0) CHECK_CLOSE(solver->history[k].step, ncg->alpha[k - 1], 1e-5, ncg->alpha[k - 1]);
+    if (k < NCG_STEPS)
+      CHECK_CLOSE(PetscSqr(solver->history[k].preconditioned_norm), ncg->g_squared[k], 1e-5, ncg->g_squared[k]);
+    if (k > 0) {
+      const PetscReal decrease = (ncg->energy[k] - ncg->energy[k - 1]) / (ncg->alpha[k - 1] * ncg->slope[k - 1]);
+      CHECK_CLOSE(solver->history[k].wolfe_decrease, decrease, 1e-4, 1.);
+    }
   }
   PetscCall(EqmSolverDestroy(&solver));
+  PetscFunctionReturn(0);
+}
+
+/* With the strong Wolfe search every step meets (22), here with c2 = .01, which the steps of (18) do not all meet. */
+static PetscErrorCode TestWolfe(EqmMesh mesh)
+{
+  static const char *const searches[2] = {"wolfe", "printed"};
+  PetscInt misses[2] = {0, 0};
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 2; k++) {
+    char options[128];
+    EqmSolver solver;
+    PetscCall(PetscSNPrintf(options, sizeof(options),
+                            "-method ncg -ncg_line_search %s -ncg_c2 .01 -max_it 30 -energy_rtol 0", searches[k]));
+    PetscCall(TestSolve(mesh, "disk", options, &solver));
+    CHECK(solver->history[0].wolfe_slope == -1., "the first map was made by a step");
+    for (PetscInt i = 1; i < solver->num_history; i++) {
+      const EqmHistoryRow *const row = &solver->history[i];
+      misses[k] += row->wolfe_decrease < 1e-4 || row->wolfe_slope > .01;
+    }
+    CHECK(solver->iterate->totals.energy < .5 * solver->history[0].energy, "%s: energy %g of %g", searches[k],
+          (double)solver->iterate->totals.energy, (double)solver->history[0].energy);
+    PetscCall(EqmSolverDestroy(&solver));
+  }
+  CHECK(misses[0] == 0 && misses[1] > 0, "(22) is missed in %d and %d steps", (int)misses[0], (int)misses[1]);
   PetscFunctionReturn(0);
 }
 
@@ -358,6 +390,7 @@ static PetscErrorCode TestNcg(void)
   PetscCall(NcgRun(&ncg));
   PetscCall(CheckProof(&ncg));
   PetscCall(CheckHouse(test.mesh, &ncg));
+  PetscCall(TestWolfe(test.mesh));
   PetscCall(CheckWolfe(&ncg));
   PetscCall(NcgEnd(&ncg));
   PetscCall(TestMeshDestroy(&test));

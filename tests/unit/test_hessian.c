@@ -1,6 +1,7 @@
 /* Smallest eigenvalues of the Hessian against those of a dense matrix of differences of gradients. */
 #include "support/testing.h"
 #include "domain/domain_private.h"
+#include "geometry/simplex.h"
 
 enum { SKIPPED = 77, WANTED = 12 };
 
@@ -115,11 +116,84 @@ static PetscErrorCode Test(const char *shape, const char *target, PetscInt max_i
   PetscFunctionReturn(0);
 }
 
+/* E_S = area^2 / w of a triangle moved by h in two of its nine coordinates. */
+static PetscReal MovedStretch(const PetscReal x[9], PetscReal w, int i, PetscReal hi, int j, PetscReal hj)
+{
+  PetscReal y[9];
+
+  for (int k = 0; k < 9; k++) y[k] = x[k];
+  y[i] += hi;
+  y[j] += hj;
+  return PetscSqr(EqmArea3(y, y + 3, y + 6)) / w;
+}
+
+/* The matrix of 001 Appendix B is made of the second differences of E_S. */
+static PetscErrorCode TestStretchCell(void)
+{
+  const PetscReal x[9] = {.1, .2, -.3, 1.1, .4, .2, .3, 1.2, .5}, *const p[3] = {x, x + 3, x + 6}, w = .7, h = 1e-3;
+  PetscReal matrix[81];
+
+  PetscFunctionBegin;
+  EqmStretchHessian(p, w, matrix);
+  for (int i = 0; i < 9; i++) {
+    for (int j = 0; j < 9; j++) {
+      const PetscReal difference = (MovedStretch(x, w, i, h, j, h) - MovedStretch(x, w, i, h, j, -h) -
+                                    MovedStretch(x, w, i, -h, j, h) + MovedStretch(x, w, i, -h, j, -h)) /
+                                   (4. * h * h);
+      CHECK_CLOSE(matrix[9 * i + j], difference, 2e-5, 1.);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Its smallest eigenvalues against those of the whole matrix, dense; on one rank and on several. */
+static PetscErrorCode TestStretch(void)
+{
+  PetscReal values[2][WANTED], *matrix, *dense;
+  PetscInt found, n;
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 2; k++) {
+    TestMesh test;
+    EqmSolver solver;
+    PetscCall(TestMeshCreate(k ? PETSC_COMM_WORLD : PETSC_COMM_SELF, "head", 90, 1, &test));
+    PetscCall(TestSolve(test.mesh, "sphere", "-method rgd -max_it 5 -energy_rtol 0", &solver));
+    PetscCall(EqmSolverStretchHessianEigenvalues(solver, WANTED, values[k], &found));
+    CHECK(found == WANTED, "only %d of %d eigenvalues", (int)found, WANTED);
+    if (k == 0) {
+      const PetscReal *const x = solver->iterate->place.x;
+      n = 3 * test.mesh->num_owned;
+      PetscCall(PetscCalloc1(n * n, &matrix));
+      PetscCall(PetscMalloc1(n, &dense));
+      for (PetscInt c = 0; c < test.mesh->num_owned_cells; c++) {
+        const PetscInt *const v = test.mesh->cells + 3 * c;
+        const PetscReal *const p[3] = {x + 3 * v[0], x + 3 * v[1], x + 3 * v[2]};
+        PetscReal cell[81];
+        EqmStretchHessian(p, 4. * PETSC_PI * test.mesh->weight[c], cell);
+        for (int e = 0; e < 81; e++) matrix[n * (3 * v[e / 27] + e / 9 % 3) + 3 * v[e % 9 / 3] + e % 3] += cell[e];
+      }
+      PetscCall(Jacobi(n, matrix, dense));
+    }
+    PetscCall(EqmSolverDestroy(&solver));
+    PetscCall(TestMeshDestroy(&test));
+  }
+  CHECK(dense[0] < 0., "no eigenvalue is negative");
+  for (int k = 0; k < WANTED; k++) {
+    CHECK_CLOSE(values[0][k], dense[k], 1e-7, dense[n - 1]);
+    CHECK_CLOSE(values[1][k], values[0][k], 1e-6, dense[n - 1]);
+  }
+  PetscCall(PetscFree(matrix));
+  PetscCall(PetscFree(dense));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
   PetscCall(EqmInitialize(&argc, &argv));
   if (EqmHessianAvailable()) {
+    PetscCall(TestStretchCell());
+    PetscCall(TestStretch());
     PetscCall(Test("head", "sphere", 0, 0));
     PetscCall(Test("head", "sphere", 20, 3)); /* rotations */
     PetscCall(Test("cap", "disk", 0, 0));
