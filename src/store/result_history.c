@@ -1,6 +1,6 @@
 /* The history in a result file: /history/..., an array per column. */
 #include "store/map_private.h"
-#include "mesh/mesh_private.h"
+#include "mesh/soup_private.h"
 #include "store/columns.h"
 #include "store/store.h"
 #include "h5/h5.h"
