@@ -256,7 +256,7 @@ static PetscErrorCode WriteArrays(EqmH5 h5, EqmMap map)
   PetscCall(EqmH5WriteReals(h5, "/vertex/ratio", VertexSlab(soup, 0), map->vertex_ratio));
   if (soup->cell_size == 3) PetscCall(WriteAngles(h5, map));
   if (soup->density) PetscCall(EqmH5WriteReals(h5, "/cell/density", CellSlab(soup, 0), soup->density));
-  PetscCall(EqmSoupDeclareFieldsHdf5(h5, soup, PETSC_TRUE));
+  PetscCall(EqmSoupWriteFieldsHdf5(h5, soup, PETSC_TRUE));
   PetscCall(EqmResultWriteHistory(h5, map));
   if (map->num_hessian_eigenvalues)
     PetscCall(EqmH5WriteReals(h5, "/map/hessian_eigenvalues", HessianSlab(map, h5->rank), map->hessian_eigenvalues));
