@@ -52,8 +52,8 @@ static PetscErrorCode DensityScale(EqmMesh mesh, const PetscReal *cell_density, 
 
   PetscFunctionBegin;
   *scale = 1.;
-  if (!cell_density) PetscFunctionReturn(0);
-  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) largest = PetscMax(largest, cell_density[c]);
+  for (PetscInt c = 0; c < mesh->num_owned_cells && cell_density; c++) /* a rank without cells may have NULL, too */
+    largest = PetscMax(largest, cell_density[c]);
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, mesh->comm));
   (void)frexp(largest, &exponent);
   if (exponent > 332) *scale = ldexp(1., -exponent);
