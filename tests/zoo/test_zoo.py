@@ -26,9 +26,10 @@ CONVERGED, NOT_CONVERGED, FOLDS = 0, 4, 5
 
 
 def count_folds(path):
-    """Cells of the image that are turned over, by determinants of our own."""
+    """Cells of the image that are turned over, by determinants of our own; tetrahedra that the file itself has turned the
+    other way (-repair) by those of the file."""
     with h5py.File(path) as file:
-        places, cells = file["/map/coordinates"][:], file["/mesh/cells"][:]
+        places, cells, vertices = file["/map/coordinates"][:], file["/mesh/cells"][:], file["/mesh/vertices"][:]
     corners = places[cells]
     if cells.shape[1] == 3 and places.shape[1] == 2:
         a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -36,7 +37,9 @@ def count_folds(path):
     elif cells.shape[1] == 3:
         measure = numpy.linalg.det(corners)
     else:
-        measure = numpy.linalg.det(corners[:, 1:] - corners[:, :1])
+        size = numpy.abs(vertices - vertices[0]).max()
+        solid = ((vertices - vertices[0]) / size)[cells]
+        measure = numpy.linalg.det(corners[:, 1:] - corners[:, :1]) * numpy.sign(numpy.linalg.det(solid[:, 1:] - solid[:, :1]))
     if numpy.median(measure) < 0:  # a mesh whose cells all turn the other way
         measure = -measure
     return int((~(measure > 0)).sum())
