@@ -188,7 +188,7 @@ static PetscErrorCode TakeStart(EqmMethod method, EqmIterate iterate)
   if (!(lm->now.objective < INFINITY)) {
     EqmFail(method->comm, EQM_ERR_USAGE,
             "-method lm needs a start without folds, and this one has %" PetscInt64_FMT
-            "; take -start guarded, or another start or method, or a better mesh",
+            "; take another -start, or -method lbfgs, ncg or rgd, which go on from folds, or a better mesh",
             iterate->totals.folds);
   }
   iterate->objective = lm->now.objective;
