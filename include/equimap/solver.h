@@ -44,12 +44,12 @@ PETSC_EXTERN PetscErrorCode EqmSolverSetCorners(EqmSolver solver, const PetscInt
    vertex) in place of -start. `x` is copied. */
 PETSC_EXTERN PetscErrorCode EqmSolverSetFirstMap(EqmSolver solver, PetscInt dim, const PetscReal *x);
 /* EqmSolverSetLandmarks - draw vertices (input numbers, `num` of them, the same lists on every rank) towards places of
-   the target, `dim` coordinates each: the objective gets the term lambda sum |x(v_i) - q_i|^2 (000 (46), 001 section
-   6.6), and the map is not done before each is closer than `tolerance`. The lists are copied. Errors, when the solver
-   is set up: EQM_ERR_USAGE (the method takes no landmarks). */
+   the target, `dim` coordinates each: the objective gets the term lambda sum w_i |x(v_i) - q_i|^2 (000 (46), 001
+   section 6.6), `weights` w_i above zero, NULL: all 1, and the map is not done before each is closer than `tolerance`.
+   The lists are copied. Errors, when the solver is set up: EQM_ERR_USAGE (the method takes no landmarks). */
 PETSC_EXTERN PetscErrorCode EqmSolverSetLandmarks(EqmSolver solver, PetscInt num, PetscInt dim,
-                                                  const PetscInt *vertices, const PetscReal *places, PetscReal lambda,
-                                                  PetscReal tolerance);
+                                                  const PetscInt *vertices, const PetscReal *places,
+                                                  const PetscReal *weights, PetscReal lambda, PetscReal tolerance);
 /* EqmSolverSetFromOptions - read the options that `equimap TARGET --help` lists under Map; with -help in the options
    database, print them. Collective. Errors: EQM_ERR_USAGE. */
 PETSC_EXTERN PetscErrorCode EqmSolverSetFromOptions(EqmSolver solver);

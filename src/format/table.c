@@ -53,6 +53,23 @@ static PetscErrorCode ParseRow(Reading *reading)
   return 0;
 }
 
+/* The names in the header, without blanks and quotes around them. */
+static void ReadNames(const EqmInput *in, EqmTable *table)
+{
+  const char *c = in->cursor;
+  PetscInt column = 0;
+  size_t length = 0;
+
+  for (; c < in->end && *c != '\n' && *c != '\r' && column < EQM_MOST_COLUMNS; ++c) {
+    if (*c == ',' || *c == ';' || *c == '\t') {
+      ++column;
+      length = 0;
+    } else if (length + 1 < EQM_COLUMN_NAME && *c != ' ' && *c != '"') {
+      table->name[column][length++] = *c;
+    }
+  }
+}
+
 static PetscErrorCode ParseTable(Reading *reading)
 {
   EqmInput *const in = &reading->in;
@@ -61,6 +78,7 @@ static PetscErrorCode ParseTable(Reading *reading)
   EqmSkipMark(in);
   if (ReadNumbers(in, EQM_MOST_COLUMNS, values) >= 1)
     return EqmReject(in, EQM_ERR_IO, "the first line is numbers; it must be a header with the names of the columns");
+  ReadNames(in, reading->table);
   for (EqmSkipLine(in); in->cursor < in->end; EqmSkipLine(in)) {
     if (!EqmAtLineEnd(in)) EqmTry(ParseRow(reading));
   }
@@ -97,5 +115,6 @@ PetscErrorCode EqmTableRead(MPI_Comm comm, const char *file, PetscInt least, Pet
   PetscCall(EqmAgree(comm, error, message));
   PetscCallMPI(MPI_Bcast(&table->rows, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(&table->columns, 1, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(table->name, EQM_MOST_COLUMNS * EQM_COLUMN_NAME, MPI_CHAR, 0, comm));
   PetscFunctionReturn(0);
 }

@@ -4,11 +4,12 @@
 
 #include <equimap/base.h>
 
-enum { EQM_MOST_COLUMNS = 16 };
+enum { EQM_MOST_COLUMNS = 16, EQM_COLUMN_NAME = 32 };
 
 typedef struct {
   PetscInt rows, columns;
-  PetscReal *values; /* on rank 0: rows * columns; PetscFree it */
+  char name[EQM_MOST_COLUMNS][EQM_COLUMN_NAME]; /* of the columns, on every rank; what is longer is cut off */
+  PetscReal *values;                            /* on rank 0: rows * columns; PetscFree it */
 } EqmTable;
 
 /* Read a header line and rows of between `least` and `most` numbers, as many in each row. Numbers are separated by

@@ -9,7 +9,8 @@ typedef struct {
   PetscReal *z, *pull;
 } Drawn;
 
-/* T lambda D and T lambda P^T g: the paper's L_S is that of the target's measure T, the program's of measure one. */
+/* T lambda D and T lambda P^T g, each landmark's with its weight: the paper's L_S is that of the target's measure T,
+ * the program's of measure one. */
 static PetscErrorCode AddLandmarks(EqmProblem problem, const EqmLandmarks *landmarks, Drawn *d)
 {
   const EqmMesh mesh = problem->mesh;
@@ -21,7 +22,8 @@ static PetscErrorCode AddLandmarks(EqmProblem problem, const EqmLandmarks *landm
     const PetscInt v = landmarks->vertex[i];
     if (d->group[v] == EQM_GROUP_FIXED) continue;
     d->share[v] = scale * landmarks->share[v];
-    for (PetscInt c = 0; c < 2; c++) d->columns[c * n + v] += scale * landmarks->place[2 * i + c];
+    for (PetscInt c = 0; c < 2; c++)
+      d->columns[c * n + v] += scale * landmarks->weight[i] * landmarks->place[2 * i + c];
   }
   PetscFunctionReturn(0);
 }

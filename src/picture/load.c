@@ -1,25 +1,7 @@
 /* Read a result file for a report. */
-#include "picture/picture.h"
-#include "h5/h5.h"
+#include "picture/load.h"
 #include "store/store.h"
 #include <math.h>
-
-/* All rows of an array, which must have `width` entries per row (0: one-dimensional). */
-static PetscErrorCode LoadReals(EqmH5 h5, const char *path, PetscInt64 width, PetscInt *total, PetscReal **values)
-{
-  PetscInt64 rows, entries;
-
-  PetscFunctionBegin;
-  PetscCall(EqmH5GetShape(h5, path, &rows, &entries));
-  if (entries != width || rows > PETSC_MAX_INT / PetscMax(width, 1)) {
-    EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': %s has an unexpected shape", h5->name, path);
-  }
-  PetscCall(PetscMalloc1(rows * PetscMax(width, 1), values));
-  const EqmSlab slab = {(PetscInt)rows, 0, (PetscInt)rows, (PetscInt)width};
-  PetscCall(EqmH5ReadReals(h5, path, slab, *values));
-  *total = (PetscInt)rows;
-  PetscFunctionReturn(0);
-}
 
 /* A damaged file must not name vertices that do not exist. */
 static PetscErrorCode LoadCells(EqmH5 h5, EqmResult *result)
@@ -62,7 +44,7 @@ static PetscErrorCode LoadPlaces(EqmH5 h5, const char *path, EqmResult *result, 
     EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': %s does not fit the mesh", h5->name, path);
   }
   *dim = (PetscInt)width;
-  PetscCall(LoadReals(h5, path, width, &count, &compact));
+  PetscCall(EqmLoadReals(h5, path, width, &count, &compact));
   PetscCall(PetscCalloc1(3 * count, places));
   for (PetscInt i = 0; i < count; i++) {
     for (PetscInt d = 0; d < *dim; d++) (*places)[3 * i + d] = compact[*dim * i + d];
@@ -82,54 +64,6 @@ static PetscErrorCode LoadImages(EqmH5 h5, EqmResult *result)
   PetscFunctionReturn(0);
 }
 
-/* The points of B to which the landmarks belong: named by vertices of B, or by coordinates. */
-static PetscErrorCode LoadGoals(EqmH5 h5, EqmResult *result)
-{
-  const PetscInt n = result->num_landmarks;
-  PetscReal *vertices = NULL, *number = NULL;
-  PetscInt rows, count;
-  PetscBool named;
-
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc1(3 * n, &result->landmark_goal));
-  PetscCall(EqmH5HasDataset(h5, "/register/landmarks/vertex_b", &named));
-  if (!named) {
-    PetscInt64 total, width;
-    PetscCall(EqmH5GetShape(h5, "/register/landmarks/point", &total, &width));
-    PetscCall(LoadReals(h5, "/register/landmarks/point", width, &count, &vertices));
-    for (PetscInt k = 0; k < n * PetscMin(width, 3) && count == n; k++)
-      result->landmark_goal[3 * (k / width) + k % width] = vertices[k];
-    PetscCall(PetscFree(vertices));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(LoadReals(h5, "/register/landmarks/vertex_b", 0, &count, &number));
-  PetscCall(LoadReals(h5, "/mesh_b/vertices", 3, &rows, &vertices));
-  for (PetscInt k = 0; k < 3 * n && count == n; k++) {
-    const PetscReal v = number[k / 3];
-    if (v >= 0. && v < rows) result->landmark_goal[k] = vertices[3 * (PetscInt)v + k % 3];
-  }
-  PetscCall(PetscFree(number));
-  PetscCall(PetscFree(vertices));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode LoadLandmarks(EqmH5 h5, EqmResult *result)
-{
-  PetscReal *number;
-  PetscBool has;
-
-  PetscFunctionBegin;
-  PetscCall(EqmH5HasDataset(h5, "/register/landmarks/vertex", &has));
-  if (!has) PetscFunctionReturn(0);
-  PetscCall(LoadReals(h5, "/register/landmarks/vertex", 0, &result->num_landmarks, &number));
-  PetscCall(PetscMalloc1(result->num_landmarks, &result->landmark));
-  for (PetscInt k = 0; k < result->num_landmarks; k++)
-    result->landmark[k] = (PetscInt)PetscClipInterval(number[k], 0., (PetscReal)result->num_vertices - 1.);
-  PetscCall(PetscFree(number));
-  PetscCall(LoadGoals(h5, result));
-  PetscFunctionReturn(0);
-}
-
 /* The rows that all columns have; without the first three there is no history: a map that was measured, not made here.
  */
 static PetscErrorCode LoadHistory(EqmH5 h5, EqmResult *result)
@@ -145,7 +79,7 @@ static PetscErrorCode LoadHistory(EqmH5 h5, EqmResult *result)
     PetscCall(EqmH5HasDataset(h5, paths[k], &has));
     if (!has && k < 3) PetscFunctionReturn(0);
     if (!has) continue;
-    PetscCall(LoadReals(h5, paths[k], 0, &rows, arrays[k]));
+    PetscCall(EqmLoadReals(h5, paths[k], 0, &rows, arrays[k]));
     if (k == 0) first = rows;
     if (rows != first) EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': its history is damaged", h5->name);
   }
@@ -188,16 +122,16 @@ static PetscErrorCode LoadCellValues(EqmH5 h5, EqmResult *result)
   PetscBool has;
 
   PetscFunctionBegin;
-  PetscCall(LoadReals(h5, "/cell/ratio", 0, &count, &result->ratio));
+  PetscCall(EqmLoadReals(h5, "/cell/ratio", 0, &count, &result->ratio));
   if (count != result->num_cells)
     EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': /cell/ratio does not fit the mesh", h5->name);
   PetscCall(EqmH5HasDataset(h5, "/cell/quasi_conformal", &has));
-  if (has) PetscCall(LoadReals(h5, "/cell/quasi_conformal", 0, &count, &result->quasi_conformal));
+  if (has) PetscCall(EqmLoadReals(h5, "/cell/quasi_conformal", 0, &count, &result->quasi_conformal));
   if (has && count != result->num_cells)
     EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': /cell/quasi_conformal does not fit the mesh", h5->name);
   PetscCall(EqmH5HasDataset(h5, "/cell/density", &has));
   if (has) {
-    PetscCall(LoadReals(h5, "/cell/density", 0, &count, &result->weight));
+    PetscCall(EqmLoadReals(h5, "/cell/density", 0, &count, &result->weight));
     if (count != result->num_cells)
       EqmFail(h5->comm, EQM_ERR_IO, "cannot read '%s': /cell/density does not fit the mesh", h5->name);
   } else {
@@ -235,12 +169,12 @@ static PetscErrorCode Fill(EqmH5 h5, EqmResult *result)
   }
   PetscCall(EqmCheckResultVersion(h5));
   PetscCall(LoadAttributes(h5, result));
-  PetscCall(LoadReals(h5, "/mesh/vertices", 3, &result->num_vertices, &result->vertices));
+  PetscCall(EqmLoadReals(h5, "/mesh/vertices", 3, &result->num_vertices, &result->vertices));
   PetscCall(LoadCells(h5, result));
   PetscCall(LoadImages(h5, result));
   PetscCall(LoadCellValues(h5, result));
   PetscCall(LoadAngles(h5, result));
-  PetscCall(LoadLandmarks(h5, result));
+  PetscCall(EqmLoadLandmarks(h5, result));
   PetscCall(LoadHistory(h5, result));
   PetscFunctionReturn(0);
 }
@@ -271,6 +205,8 @@ PetscErrorCode EqmResultReset(EqmResult *result)
   PetscCall(PetscFree(result->distance));
   PetscCall(PetscFree(result->landmark));
   PetscCall(PetscFree(result->landmark_goal));
+  PetscCall(PetscFree(result->landmark_target));
+  PetscCall(PetscFree(result->curve));
   PetscCall(PetscFree(result->cells));
   PetscCall(PetscFree(result->weight));
   PetscCall(PetscFree(result->quasi_conformal));

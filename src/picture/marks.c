@@ -84,15 +84,58 @@ static void DrawDot(cairo_t *cairo, double x, double y, double radius, EqmInk in
     cairo_stroke(cairo);
 }
 
-void EqmDrawLandmarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, const EqmRaster *raster, EqmBox box)
+/* Join the landmarks of each curve, in their order, as far as they are seen; `at` is the landmarks' places, 3 each. */
+static void DrawCurves(cairo_t *cairo, const EqmResult *result, const EqmView *view, const EqmRaster *raster,
+                       EqmBox box, const PetscReal *at, PetscBool broken)
 {
-  const PetscBool on_b = (PetscBool)(view->points == result->images);
+  const double dash[] = {4.0, 3.0};
 
+  cairo_save(cairo);
+  cairo_new_path(cairo);
+  for (PetscInt k = 1; k < result->num_landmarks; k++) {
+    double x, y, to_x, to_y;
+    if (result->curve[k] < 0 || result->curve[k] != result->curve[k - 1]) continue;
+    if (!PlaceOf(view, raster, box, at + 3 * (k - 1), &x, &y) || !PlaceOf(view, raster, box, at + 3 * k, &to_x, &to_y))
+      continue;
+    cairo_move_to(cairo, x, y);
+    cairo_line_to(cairo, to_x, to_y);
+  }
+  if (!broken) { /* on a white ground, so that it is seen on any pattern */
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_set_line_width(cairo, 4.5);
+    cairo_stroke_preserve(cairo);
+  }
+  EqmSetInk(cairo, broken ? EQM_INK : EQM_ORANGE);
+  cairo_set_line_width(cairo, broken ? 1.2 : 2.2);
+  if (broken) cairo_set_dash(cairo, dash, 2, 0.0);
+  cairo_stroke(cairo);
+  cairo_restore(cairo);
+}
+
+/* The places of the landmarks' vertices, 3 each; to be freed with PetscFree. */
+static PetscErrorCode PlacesOfLandmarks(const EqmResult *result, const PetscReal *points, PetscReal **places)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * result->num_landmarks, places));
+  for (PetscInt k = 0; k < 3 * result->num_landmarks; k++) (*places)[k] = points[3 * result->landmark[k / 3] + k % 3];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmDrawLandmarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, const EqmRaster *raster,
+                                EqmBox box)
+{
+  PetscReal *places;
+
+  PetscFunctionBegin;
+  PetscCall(PlacesOfLandmarks(result, view->points, &places));
+  if (result->curve) DrawCurves(cairo, result, view, raster, box, places, PETSC_FALSE);
+  if (result->curve && view->goals) DrawCurves(cairo, result, view, raster, box, view->goals, PETSC_TRUE);
   for (PetscInt k = 0; k < result->num_landmarks; k++) {
-    const PetscReal *const point = view->points + 3 * result->landmark[k];
     double x, y, goal_x, goal_y;
-    const PetscBool seen = PlaceOf(view, raster, box, point, &x, &y);
-    if (on_b && PlaceOf(view, raster, box, result->landmark_goal + 3 * k, &goal_x, &goal_y)) {
+    const PetscBool seen = PlaceOf(view, raster, box, places + 3 * k, &x, &y);
+    const PetscBool alone = (PetscBool)(!result->curve || result->curve[k] < 0);
+    if (!alone) continue;
+    if (view->goals && PlaceOf(view, raster, box, view->goals + 3 * k, &goal_x, &goal_y)) {
       if (seen) {
         EqmSetInk(cairo, EQM_INK);
         cairo_set_line_width(cairo, 1.2);
@@ -104,5 +147,7 @@ void EqmDrawLandmarks(cairo_t *cairo, const EqmResult *result, const EqmView *vi
     }
     if (seen) DrawDot(cairo, x, y, 4.0, EQM_ORANGE, PETSC_TRUE);
   }
+  PetscCall(PetscFree(places));
+  PetscFunctionReturn(0);
 }
 #endif

@@ -42,6 +42,8 @@ typedef struct {
   PetscReal *distance; /* of a registration: from a vertex to its point on B, per vertex; else NULL */
   PetscInt num_landmarks, *landmark; /* of a registration: vertices of A, */
   PetscReal *landmark_goal;          /* and where they should go on B, 3 each */
+  PetscReal *landmark_target;        /* the same in the target, 3 each; NULL: not known */
+  PetscInt *curve;                   /* per landmark its feature curve, below 0: none; NULL: there are none */
   PetscInt *cells;                   /* cell_size * num_cells */
   PetscReal *weight;                 /* per cell: measure, density included */
   PetscReal *ratio;                  /* per cell */

@@ -66,7 +66,7 @@ PetscErrorCode EqmPaintView(cairo_t *cairo, const EqmPage *page, const EqmResult
   PetscCall(EqmRasterDraw(&raster, &view->camera, view->faces, view->points, result->num_vertices));
   PetscCall(PaintRaster(cairo, &raster, &scene, box, size));
   if (view->marked) EqmDrawMarks(cairo, result, view, &raster, box);
-  if (view->landmarks) EqmDrawLandmarks(cairo, result, view, &raster, box);
+  if (view->landmarks) PetscCall(EqmDrawLandmarks(cairo, result, view, &raster, box));
   PetscCall(EqmRasterDestroy(&raster));
   PetscFunctionReturn(0);
 }

@@ -13,8 +13,9 @@ typedef struct {
   const float *normals; /* NULL: flat colours */
   EqmCamera camera;
   EqmPaint paint;
-  PetscBool marked;    /* the worst cells are marked with their numbers */
-  PetscBool landmarks; /* landmarks are drawn */
+  PetscBool marked;       /* the worst cells are marked with their numbers */
+  PetscBool landmarks;    /* landmarks are drawn, */
+  const PetscReal *goals; /* and where they should go, 3 each, unless NULL */
 } EqmView;
 
 /* Paint the view into a square box, `size` pixels wide. */
@@ -24,8 +25,9 @@ PETSC_INTERN PetscErrorCode EqmPaintView(cairo_t *cairo, const EqmPage *page, co
 /* The worst cells with their numbers in the input, those that are seen. */
 PETSC_INTERN void EqmDrawMarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, const EqmRaster *raster,
                                EqmBox box);
-/* The landmarks of a registration that are seen: on A a dot each; on B a dot where it went, a ring where it should. */
-PETSC_INTERN void EqmDrawLandmarks(cairo_t *cairo, const EqmResult *result, const EqmView *view,
-                                   const EqmRaster *raster, EqmBox box);
+/* The landmarks of a registration that are seen: a dot each where it is, a ring where it should be; neighbours on a
+   feature curve (000 figure 6) are joined by a line, where they should be by a broken one. */
+PETSC_INTERN PetscErrorCode EqmDrawLandmarks(cairo_t *cairo, const EqmResult *result, const EqmView *view,
+                                             const EqmRaster *raster, EqmBox box);
 
 #endif

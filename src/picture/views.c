@@ -14,9 +14,15 @@ typedef struct {
   float *normals[MOST_VIEWS];
 } Row;
 
+/* Feature curves, which are drawn in the target, too (000 figure 6). */
+static PetscBool HasCurves(const EqmResult *result)
+{
+  return (PetscBool)(result->curve && result->landmark_target && result->cell_size == 3);
+}
+
 static int NumViews(const EqmResult *result)
 {
-  if (result->target) return 4;
+  if (result->target) return HasCurves(result) ? 5 : 4;
   if (result->cell_size == 4) return 5;
   return result->dim == 2 ? 3 : 4;
 }
@@ -49,7 +55,7 @@ static PetscErrorCode AddView(const EqmResult *result, const char *title, const 
 
   PetscFunctionBegin;
   PetscCall(EqmFacesNormals(faces, points, result->num_vertices, normals));
-  row->view[row->count++] = (EqmView){title, faces, points, *normals, camera, paint, PETSC_FALSE, PETSC_FALSE};
+  row->view[row->count++] = (EqmView){title, faces, points, *normals, camera, paint, PETSC_FALSE, PETSC_FALSE, NULL};
   PetscFunctionReturn(0);
 }
 
@@ -89,7 +95,8 @@ static PetscErrorCode AddImage(const EqmResult *result, Row *row)
                                         flat,
                                         EQM_PAINT_CELLS,
                                         PETSC_TRUE,
-                                        PETSC_FALSE};
+                                        PETSC_FALSE,
+                                        NULL};
     PetscFunctionReturn(0);
   }
   PetscCall(
@@ -131,6 +138,25 @@ static PetscErrorCode AddSolid(const EqmResult *result, EqmCamera camera, Row *r
   PetscFunctionReturn(0);
 }
 
+/* The curves in the target: on a disk, or on the side of the sphere where they are. */
+static PetscErrorCode AddCurves(const EqmResult *result, Row *row)
+{
+  static const double pole[3] = {0, 0, 1};
+  const PetscBool is_disk = (PetscBool)(result->target_dim == 2);
+  double middle[3] = {1e-9, 0, 0};
+  EqmCamera camera = EqmCameraFlat();
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 3 * result->num_landmarks; k++) middle[k % 3] += result->landmark_target[k];
+  if (!is_disk)
+    camera = EqmCameraTurned(pole, middle, 0.0, atan2(middle[2], hypot(middle[0], middle[1])) * 180.0 / PETSC_PI);
+  PetscCall(AddView(result, is_disk ? "The curves in the disk" : "The curves on the sphere", &row->surface,
+                    result->target, camera, EQM_PAINT_PATTERN, row));
+  row->view[row->count - 1].landmarks = PETSC_TRUE;
+  row->view[row->count - 1].goals = result->landmark_target;
+  PetscFunctionReturn(0);
+}
+
 /* A registration: A and the same on B, seen from the same side, so that what differs is the shape; with a pattern of
    the target, which tells what corresponds, and with the ratio or the distance. */
 static PetscErrorCode AddRegistered(const EqmResult *result, EqmCamera camera, Row *row)
@@ -151,6 +177,8 @@ static PetscErrorCode AddRegistered(const EqmResult *result, EqmCamera camera, R
   PetscCall(AddView(result, image, &row->surface, result->images, of_b,
                     result->distance ? EQM_PAINT_DISTANCE : EQM_PAINT_CELLS, row));
   row->view[1].landmarks = row->view[2].landmarks = PETSC_TRUE;
+  row->view[2].goals = result->landmark_goal;
+  if (HasCurves(result)) PetscCall(AddCurves(result, row));
   PetscFunctionReturn(0);
 }
 

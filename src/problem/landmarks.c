@@ -7,16 +7,17 @@ PetscErrorCode EqmLandmarksReset(EqmLandmarks *landmarks)
   PetscFunctionBegin;
   PetscCall(PetscFree(landmarks->input_vertex));
   PetscCall(PetscFree(landmarks->target));
+  PetscCall(PetscFree(landmarks->given_weight));
   PetscCall(PetscFree(landmarks->vertex));
   PetscCall(PetscFree(landmarks->place));
+  PetscCall(PetscFree(landmarks->weight));
   PetscCall(PetscFree(landmarks->share));
   landmarks->num = landmarks->num_total = 0;
   PetscFunctionReturn(0);
 }
 
-/* Copy the lists. Not collective. */
 PetscErrorCode EqmLandmarksGive(EqmLandmarks *landmarks, PetscInt num, PetscInt dim, const PetscInt *vertices,
-                                const PetscReal *places)
+                                const PetscReal *places, const PetscReal *weights)
 {
   PetscFunctionBegin;
   PetscCall(EqmLandmarksReset(landmarks));
@@ -24,8 +25,10 @@ PetscErrorCode EqmLandmarksGive(EqmLandmarks *landmarks, PetscInt num, PetscInt 
   landmarks->dim = dim;
   PetscCall(PetscMalloc1(num, &landmarks->input_vertex));
   PetscCall(PetscMalloc1(dim * num, &landmarks->target));
+  PetscCall(PetscMalloc1(num, &landmarks->given_weight));
   PetscCall(PetscArraycpy(landmarks->input_vertex, vertices, num));
   PetscCall(PetscArraycpy(landmarks->target, places, dim * num));
+  for (PetscInt i = 0; i < num; i++) landmarks->given_weight[i] = weights ? weights[i] : 1.;
   PetscFunctionReturn(0);
 }
 
@@ -40,7 +43,7 @@ static PetscErrorCode MakeShares(EqmLandmarks *landmarks, EqmMesh mesh)
   for (PetscInt k = 0; k < mesh->cell_size * mesh->num_local_cells; k++) cells_around[mesh->cells[k]]++;
   for (PetscInt i = 0; i < landmarks->num; i++) {
     const PetscInt v = landmarks->vertex[i];
-    landmarks->share[v] += 1. / cells_around[v];
+    landmarks->share[v] += landmarks->weight[i] / cells_around[v];
   }
   PetscCall(PetscFree(cells_around));
   PetscFunctionReturn(0);
@@ -57,11 +60,13 @@ PetscErrorCode EqmLandmarksSetUp(EqmLandmarks *landmarks, EqmDomain domain)
   PetscCheck(dim == domain->dim, mesh->comm, PETSC_ERR_ARG_INCOMP, "landmarks have the target's coordinates");
   PetscCall(PetscMalloc1(landmarks->num_total, &landmarks->vertex));
   PetscCall(PetscMalloc1(dim * landmarks->num_total, &landmarks->place));
+  PetscCall(PetscMalloc1(landmarks->num_total, &landmarks->weight));
   PetscCall(PetscMalloc1(landmarks->num_total, &local));
   PetscCall(EqmMeshFindVertices(mesh, landmarks->num_total, landmarks->input_vertex, local));
   for (PetscInt i = 0; i < landmarks->num_total; i++) {
     if (local[i] < 0) continue;
     landmarks->vertex[landmarks->num] = local[i];
+    landmarks->weight[landmarks->num] = landmarks->given_weight[i];
     for (PetscInt c = 0; c < dim; c++) landmarks->place[dim * landmarks->num + c] = landmarks->target[dim * i + c];
     landmarks->num++;
   }
@@ -89,7 +94,8 @@ PetscErrorCode EqmLandmarksSquares(const EqmLandmarks *landmarks, EqmDomain doma
   PetscReal local = 0.;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < landmarks->num; i++) local += Squared(landmarks, domain->dim, i, x, velocity);
+  for (PetscInt i = 0; i < landmarks->num; i++)
+    local += landmarks->weight[i] * Squared(landmarks, domain->dim, i, x, velocity);
   PetscCall(MPIU_Allreduce(&local, squares, 1, MPIU_REAL, MPIU_SUM, domain->mesh->comm));
   PetscFunctionReturn(0);
 }
@@ -114,7 +120,7 @@ void EqmLandmarksAddGradient(const EqmLandmarks *landmarks, EqmDomain domain, co
   for (PetscInt i = 0; i < landmarks->num; i++) {
     for (PetscInt c = 0; c < dim; c++) {
       const PetscInt at = dim * landmarks->vertex[i] + c;
-      gradient[at] += factor * (x[at] - landmarks->place[dim * i + c]);
+      gradient[at] += factor * landmarks->weight[i] * (x[at] - landmarks->place[dim * i + c]);
     }
   }
 }

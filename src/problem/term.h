@@ -52,7 +52,7 @@ PETSC_INTERN PetscErrorCode EqmTermsAddCurve(EqmProblem problem, const EqmPlace 
 /* E_D - A, the angle energy of a surface's map, with the mesh's cotangents (docs/methods.md, Uniqueness: -balance).
    Collective. */
 PETSC_INTERN PetscErrorCode EqmTermCreateAngle(EqmProblem problem, PetscReal weight, EqmTerm *term);
-/* sum |x(v_i) - q_i|^2 over the problem's landmarks (000 (46), 001 section 6.6). Collective. */
+/* sum w_i |x(v_i) - q_i|^2 over the problem's landmarks (000 (46), 001 section 6.6). Collective. */
 PETSC_INTERN PetscErrorCode EqmTermCreateLandmarks(EqmProblem problem, PetscReal weight, EqmTerm *term);
 /* Maps to the sphere: sum w log^2(h / a), h half the determinant of a triangle's corners and a its area: infinite where
    a triangle is seen from its edge from the centre, so that none tips over. Collective. */

@@ -1,4 +1,4 @@
-/* Landmarks, vertices with target positions: sum |x(v_i) - q_i|^2 (000 (46), 001 section 6.6). */
+/* Landmarks, vertices with target positions: sum w_i |x(v_i) - q_i|^2 (000 (46), 001 section 6.6). */
 #include "problem/term.h"
 #include "domain/domain_private.h"
 #include "geometry/simplex.h"
@@ -26,7 +26,8 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   PetscFunctionReturn(0);
 }
 
-/* Half the Hessian of a square is the identity; curvature of the domain is neglected. */
+/* Half the Hessian of a square is w_i times the identity, and the shares hold w_i; curvature of the domain is
+ * neglected. */
 static void AddMatrix(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image, PetscInt cell,
                       const EqmCellFrame *frame, PetscReal factor, PetscReal *matrix)
 {

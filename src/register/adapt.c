@@ -8,7 +8,8 @@
 #include "solver/inner.h"
 #include <string.h>
 
-/* 000 section 6: the rotation of A's map that brings the landmarks closest to their goals. Collective. */
+/* 000 section 6: the rotation of A's map that brings the landmarks closest to their goals, each with its weight.
+   Collective. */
 PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r)
 {
   const PetscInt num = r->landmarks.num, dim = r->dim;
@@ -19,7 +20,7 @@ PetscErrorCode EqmRotateOntoLandmarks(EqmRegistration r)
   PetscCall(EqmMeshGatherVertices(r->a.mesh, num, r->landmarks.vertex, dim, r->a.x, place, NULL));
   for (PetscInt k = 0; k < dim * dim * num; k++) {
     const PetscInt p = k / (dim * dim), i = k / dim % dim, j = k % dim;
-    correlation[dim * i + j] += r->goal[dim * p + i] * place[dim * p + j];
+    correlation[dim * i + j] += r->landmarks.weight[p] * r->goal[dim * p + i] * place[dim * p + j];
   }
   PetscCall(EqmBestRotation(dim, correlation, rotation));
   EqmRotate(dim, rotation, r->a.mesh->num_local, r->a.x);
@@ -57,7 +58,8 @@ static PetscErrorCode CreateSolver(EqmRegistration r, EqmSide *side, const Petsc
   }
   if (*held) PetscCall(EqmSolverHoldBoundary(*solver));
   PetscCall(EqmSolverSetFirstMap(*solver, r->dim, side->x));
-  PetscCall(EqmSolverSetLandmarks(*solver, r->landmarks.num, r->dim, vertices, goal, weight, r->set.tolerance));
+  PetscCall(EqmSolverSetLandmarks(*solver, r->landmarks.num, r->dim, vertices, goal, r->landmarks.weight, weight,
+                                  r->set.tolerance));
   PetscFunctionReturn(0);
 }
 

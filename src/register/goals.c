@@ -186,6 +186,7 @@ PetscErrorCode EqmLandmarkErrors(EqmRegistration r)
   PetscCall(EqmMeshGatherVertices(r->a.mesh, num, r->landmarks.vertex, r->dim, r->a.x, p, NULL));
   PetscCall(PetscArraycpy(q, r->goal, r->dim * num));
   if (on_b) PetscCall(GatherOnB(r, r->dim, r->b.x, q)); /* B may have moved */
+  PetscCall(PetscArraycpy(r->goal, q, r->dim * num));
   MeanAndMax(num, r->dim, p, q, 1., &f->landmark_mean, &f->landmark_max);
   f->landmarks_in_space = on_b;
   if (on_b) {

@@ -76,29 +76,54 @@ static PetscErrorCode AddLandmarkFigures(EqmRegistration r)
   PetscFunctionReturn(0);
 }
 
-/* The landmarks as their file lists them: vertices of A, and vertices of B or points. Rank 0 has them. */
-static PetscErrorCode AddLandmarks(EqmRegistration r)
+static PetscErrorCode AddOfLandmarks(EqmRegistration r, const char *path, PetscInt width, const PetscReal *values)
 {
-  const EqmLandmarkList *const list = &r->landmarks;
-  PetscInt64 *vertex, *other;
-  PetscReal *point;
+  PetscReal *copy;
   PetscMPIInt rank;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
-  const PetscInt count = rank == 0 ? list->num : 0;
-  PetscCall(PetscMalloc1(count, &vertex));
-  for (PetscInt k = 0; k < count; k++) vertex[k] = list->vertex[k];
-  PetscCall(EqmMapAddIntegers(r->map, "/register/landmarks/vertex", list->num, 0, count, 0, vertex));
+  const PetscInt count = rank == 0 ? r->landmarks.num : 0, each = PetscMax(width, 1);
+  PetscCall(PetscMalloc1(each * count, &copy));
+  PetscCall(PetscArraycpy(copy, values, each * count));
+  PetscCall(EqmMapAddReals(r->map, path, r->landmarks.num, 0, count, width, copy));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddNumbersOfLandmarks(EqmRegistration r, const char *path, const PetscInt *values)
+{
+  PetscInt64 *copy;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
+  const PetscInt count = rank == 0 ? r->landmarks.num : 0;
+  PetscCall(PetscMalloc1(count, &copy));
+  for (PetscInt k = 0; k < count; k++) copy[k] = values[k];
+  PetscCall(EqmMapAddIntegers(r->map, path, r->landmarks.num, 0, count, 0, copy));
+  PetscFunctionReturn(0);
+}
+
+/* The landmarks as their file lists them: vertices of A, and vertices of B or points; and their goals in the target.
+   Rank 0 has them. */
+static PetscErrorCode AddLandmarks(EqmRegistration r)
+{
+  const EqmLandmarkList *const list = &r->landmarks;
+  PetscInt *other;
+
+  PetscFunctionBegin;
+  PetscCall(AddNumbersOfLandmarks(r, "/register/landmarks/vertex", list->vertex));
   if (list->width == 1) {
-    PetscCall(PetscMalloc1(count, &other));
-    for (PetscInt k = 0; k < count; k++) other[k] = (PetscInt64)list->other[k];
-    PetscCall(EqmMapAddIntegers(r->map, "/register/landmarks/vertex_b", list->num, 0, count, 0, other));
+    PetscCall(PetscMalloc1(list->num, &other));
+    for (PetscInt k = 0; k < list->num; k++) other[k] = (PetscInt)list->other[k];
+    PetscCall(AddNumbersOfLandmarks(r, "/register/landmarks/vertex_b", other));
+    PetscCall(PetscFree(other));
   } else {
-    PetscCall(PetscMalloc1(list->width * count, &point));
-    PetscCall(PetscArraycpy(point, list->other, list->width * count));
-    PetscCall(EqmMapAddReals(r->map, "/register/landmarks/point", list->num, 0, count, list->width, point));
+    PetscCall(AddOfLandmarks(r, "/register/landmarks/point", list->width, list->other));
   }
+  PetscCall(AddOfLandmarks(r, "/register/landmarks/goal", r->dim, r->goal));
+  if (list->has_weights) PetscCall(AddOfLandmarks(r, "/register/landmarks/weight", 0, list->weight));
+  if (list->has_curves) PetscCall(AddNumbersOfLandmarks(r, "/register/landmarks/curve", list->curve));
   PetscFunctionReturn(0);
 }
 

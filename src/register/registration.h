@@ -77,7 +77,7 @@ struct _p_EqmRegistration {
   EqmLandmarkList landmarks;
   PetscInt num_fields;
   EqmCarriedField *fields; /* of -transfer */
-  PetscReal *goal;         /* dim per landmark: g(q) */
+  PetscReal *goal;         /* dim per landmark: g(q), in the end h1(g(q)) where B has moved */
   EqmLocation on_b;        /* locations of landmarks that are points of B's surface, on rank 0; else NULL */
   EqmLocation forward, inverse;
   PetscReal *image, *inverse_image; /* phi per owned vertex of A, phi^-1 per owned vertex of B: three coordinates */

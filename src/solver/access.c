@@ -92,11 +92,12 @@ PetscErrorCode EqmSolverSetFirstMap(EqmSolver solver, PetscInt dim, const PetscR
 }
 
 PetscErrorCode EqmSolverSetLandmarks(EqmSolver solver, PetscInt num, PetscInt dim, const PetscInt *vertices,
-                                     const PetscReal *places, PetscReal lambda, PetscReal tolerance)
+                                     const PetscReal *places, const PetscReal *weights, PetscReal lambda,
+                                     PetscReal tolerance)
 {
   PetscFunctionBegin;
   PetscCall(CheckNotSetUp(solver, PETSC_FUNCTION_NAME));
-  PetscCall(EqmLandmarksGive(&solver->landmarks, num, dim, vertices, places));
+  PetscCall(EqmLandmarksGive(&solver->landmarks, num, dim, vertices, places, weights));
   solver->landmarks.lambda = lambda;
   solver->landmarks.tolerance = tolerance;
   PetscFunctionReturn(0);

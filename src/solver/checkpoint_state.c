@@ -65,6 +65,8 @@ static PetscErrorCode VisitLandmarks(EqmState state, EqmSolver solver)
   if (landmarks->num_total == 0) PetscFunctionReturn(0);
   PetscCall(EqmStateSameInt(state, "the checksum of the landmarks' vertices",
                             EqmChecksumIntegers(landmarks->num_total, landmarks->input_vertex).crc));
+  PetscCall(EqmStateSameInt(state, "the checksum of the landmarks' weights",
+                            EqmChecksumReals(landmarks->num_total, landmarks->given_weight).crc));
   PetscCall(PetscMalloc1(count, &places));
   PetscCall(PetscArraycpy(places, landmarks->target, count));
   PetscCall(EqmStateReals(state, "landmark_places", count, places));

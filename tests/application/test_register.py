@@ -285,7 +285,7 @@ def check_refused(program):
         (2, f"vertex {len(vertices)} of A is in no cell", "lonely.obj", "hills.obj", *landmarks("lonely")),
         (6, "line 2", *both, *landmarks("words")),
         (6, "line 3", *both, *landmarks("ragged")),
-        (6, "line 2", *both, *landmarks("wide")),
+        (2, "a landmark is a vertex", *both, *landmarks("wide")),
         (2, "no finite number", *closed, *landmarks("nowhere")),
         (6, "no numbers", *both, *landmarks("empty")),
         (6, "header", *both, *landmarks("headless")),

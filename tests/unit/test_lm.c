@@ -12,6 +12,7 @@
 static PetscErrorCode Begin(EqmMesh mesh, const char *target, const char *more, PetscBool landmarks, EqmSolver *solver)
 {
   static const PetscInt vertex[3] = {5, 40, 77};
+  static const PetscReal weight[3] = {1., .4, 3.};
   static const PetscReal planar[6] = {.3, .4, -.5, .2, .6, -.1},
                          spherical[9] = {.3, .4, .866, -.5, .2, .84, .6, -.1, .79};
   const PetscInt dim = strcmp(target, "sphere") ? 2 : 3;
@@ -23,7 +24,8 @@ static PetscErrorCode Begin(EqmMesh mesh, const char *target, const char *more, 
   PetscCall(TestOptionsBegin(text, &options));
   PetscCall(EqmSolverCreate(mesh, target, solver));
   PetscCall(EqmSolverSetFromOptions(*solver));
-  if (landmarks) PetscCall(EqmSolverSetLandmarks(*solver, 3, dim, vertex, dim == 2 ? planar : spherical, 2., 1e-2));
+  if (landmarks)
+    PetscCall(EqmSolverSetLandmarks(*solver, 3, dim, vertex, dim == 2 ? planar : spherical, weight, 2., 1e-2));
   PetscCall(EqmSolverSetUp(*solver));
   PetscCall(TestOptionsEnd(&options));
   PetscCall(EqmMethodSetUp((*solver)->method, (*solver)->problem, (*solver)->iterate));
