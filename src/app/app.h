@@ -32,6 +32,7 @@ PETSC_INTERN PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatu
 PETSC_INTERN PetscErrorCode EqmCommandMeasure(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandGenerate(const EqmCommandLine *line, EqmStatus *status);
+PETSC_INTERN PetscErrorCode EqmCommandResample(const EqmCommandLine *line, EqmStatus *status);
 PETSC_INTERN PetscErrorCode EqmCommandReport(const EqmCommandLine *line, EqmStatus *status);
 
 /* Options of the parallel layout: -threads, which main reads before any command (read again so that --help lists it),

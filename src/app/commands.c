@@ -13,6 +13,8 @@ static const EqmCommandRow commands[] = {
     {"conformal", EqmCommandMap, "MESH -o OUT", NULL},
     {"ball", EqmCommandMap, "MESH -o OUT", NULL},
     {"register", EqmCommandRegister, "A B -o OUT", "measure-preserving correspondence between two surfaces or solids"},
+    {"resample", EqmCommandResample, "RESULT -grid N -o OUT",
+     "a mesh made anew through its map: regular, or as another one"},
     {"check", EqmCommandCheck, "MESH", "diagnose a mesh: what it is, what is wrong, what each command would say"},
     {"measure", EqmCommandMeasure, "MESH MAP", "distortion and folds of any map, also one made elsewhere"},
     {"convert", EqmCommandConvert, "IN OUT", "between mesh formats"},

@@ -61,13 +61,38 @@ static PetscErrorCode FindShape(MPI_Comm comm, const char *name, const EqmShape 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmSoupFromLattice(MPI_Comm comm, const EqmLattice *lattice, const EqmLatticePlan *plan,
+                                  EqmPlacement place, const char *name, EqmSoup *soup)
+{
+  PetscInt total_vertices = plan->num_vertices, total_cells = plan->num_cells;
+  PetscInt num_vertices = PETSC_DECIDE, num_cells = PETSC_DECIDE, vertex_end, cell_end, *cells;
+  PetscReal *vertices;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSplitOwnership(comm, &num_vertices, &total_vertices));
+  PetscCall(PetscSplitOwnership(comm, &num_cells, &total_cells));
+  PetscCallMPI(MPI_Scan(&num_vertices, &vertex_end, 1, MPIU_INT, MPI_SUM, comm));
+  PetscCallMPI(MPI_Scan(&num_cells, &cell_end, 1, MPIU_INT, MPI_SUM, comm));
+  PetscCall(PetscMalloc1(3 * num_vertices, &vertices));
+  PetscCall(PetscMalloc1(plan->cell_size * num_cells, &cells));
+  for (PetscInt i = 0; i < num_vertices; i++) {
+    PetscReal parameter[3];
+
+    lattice->parameter(plan, vertex_end - num_vertices + i, parameter);
+    place(plan, parameter, vertices + 3 * i);
+  }
+  for (PetscInt i = 0; i < num_cells; i++) {
+    lattice->cell(plan, cell_end - num_cells + i, cells + plan->cell_size * i);
+  }
+  PetscCall(EqmSoupCreateFromSlabs(comm, plan->cell_size, num_vertices, vertices, num_cells, cells, name, soup));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmSoupGenerate(MPI_Comm comm, const char *shape_name, PetscInt n, PetscInt seed, EqmSoup *soup)
 {
   const PetscInt n_max = PETSC_MAX_INT / 8; /* tetrahedra: six per vertex, and headroom */
   const EqmShape *shape;
   EqmLatticePlan plan = {.seed = seed};
-  PetscInt num_vertices = PETSC_DECIDE, num_cells = PETSC_DECIDE, vertex_end, cell_end, *cells;
-  PetscReal *vertices;
 
   PetscFunctionBegin;
   PetscCall(FindShape(comm, shape_name, &shape));
@@ -76,21 +101,6 @@ PetscErrorCode EqmSoupGenerate(MPI_Comm comm, const char *shape_name, PetscInt n
             n, n_max);
   }
   shape->lattice->plan(n, &plan);
-  PetscCall(PetscSplitOwnership(comm, &num_vertices, &plan.num_vertices));
-  PetscCall(PetscSplitOwnership(comm, &num_cells, &plan.num_cells));
-  PetscCallMPI(MPI_Scan(&num_vertices, &vertex_end, 1, MPIU_INT, MPI_SUM, comm));
-  PetscCallMPI(MPI_Scan(&num_cells, &cell_end, 1, MPIU_INT, MPI_SUM, comm));
-  PetscCall(PetscMalloc1(3 * num_vertices, &vertices));
-  PetscCall(PetscMalloc1(plan.cell_size * num_cells, &cells));
-  for (PetscInt i = 0; i < num_vertices; i++) {
-    PetscReal parameter[3];
-
-    shape->lattice->parameter(&plan, vertex_end - num_vertices + i, parameter);
-    shape->place(&plan, parameter, vertices + 3 * i);
-  }
-  for (PetscInt i = 0; i < num_cells; i++) {
-    shape->lattice->cell(&plan, cell_end - num_cells + i, cells + plan.cell_size * i);
-  }
-  PetscCall(EqmSoupCreateFromSlabs(comm, plan.cell_size, num_vertices, vertices, num_cells, cells, shape_name, soup));
+  PetscCall(EqmSoupFromLattice(comm, shape->lattice, &plan, shape->place, shape_name, soup));
   PetscFunctionReturn(0);
 }

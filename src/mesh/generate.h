@@ -11,6 +11,7 @@ typedef struct {
   PetscInt num_vertices, num_cells;
   PetscInt size[3]; /* vertices (solids: cells) per direction, or the frequency of a subdivision in size[0] */
   PetscInt seed;
+  PetscBool regular; /* no vertex is moved, and diagonals are parallel */
 } EqmLatticePlan;
 
 /* Connectivity of a shape, every vertex and cell computable on its own, so that each rank makes its slab alone. */
@@ -44,10 +45,21 @@ PETSC_INTERN void EqmPlaceBall(const EqmLatticePlan *, const PetscReal[3], Petsc
 PETSC_INTERN void EqmPlaceFigure(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN void EqmPlaceBlob(const EqmLatticePlan *, const PetscReal[3], PetscReal[3]);
 
+/* The mesh of a lattice whose size has been planned, each rank its slab. Collective. */
+PETSC_INTERN PetscErrorCode EqmSoupFromLattice(MPI_Comm comm, const EqmLattice *lattice, const EqmLatticePlan *plan,
+                                               EqmPlacement place, const char *name, EqmSoup *soup);
+
+/* EqmSoupGenerateTarget - a regular mesh of a unit target: of the square n x n vertices, row by row; of the disk n
+   rings of 6, 12, 18, ... vertices; of the sphere the icosahedron with its edges cut into n; of the ball concentric
+   layers of tetrahedra, n from the centre to the boundary. The target's name is one of these four.
+
+   Collective; the same on any number of ranks. Errors: EQM_ERR_USAGE (n out of range). */
+PETSC_INTERN PetscErrorCode EqmSoupGenerateTarget(MPI_Comm comm, const char *target, PetscInt n, EqmSoup *soup);
+
 /* How far a vertex may be moved, in spacings: far enough to be irregular, near enough for no triangle to turn over. */
 static inline PetscReal EqmLatticeJitter(const EqmLatticePlan *plan, PetscInt vertex, PetscInt channel)
 {
-  return 0.18 * (2.0 * EqmHashUniform(plan->seed, vertex, channel) - 1.0);
+  return plan->regular ? 0.0 : 0.18 * (2.0 * EqmHashUniform(plan->seed, vertex, channel) - 1.0);
 }
 
 #endif

@@ -36,7 +36,7 @@ static PetscBool GridDiagonalRises(const EqmLatticePlan *plan, PetscBool open, P
   const PetscInt last[2] = {plan->size[0] - 2, plan->size[1] - 2};
 
   if (open && (i == 0 || i == last[0]) && (j == 0 || j == last[1])) return (PetscBool)((i == 0) == (j == 0));
-  return (PetscBool)(EqmHashUniform(plan->seed, j * plan->size[0] + i, 7) < 0.5);
+  return (PetscBool)(plan->regular || EqmHashUniform(plan->seed, j * plan->size[0] + i, 7) < 0.5);
 }
 
 static void GridCell(const EqmLatticePlan *plan, EqmSides left_right, EqmSides bottom_top, PetscInt cell,

@@ -22,6 +22,7 @@ class Equimap(CMakePackage):
 
     variant("shared", default=False, description="Build a shared library")
     variant("report", default=True, description="Draw pictures and plots of results (cairo)")
+    variant("images", default=True, description="Geometry images (libpng, libtiff)")
     variant("int64", default=False, description="64-bit indices, for more than some 50 million vertices")
     variant("slepc", default=False, description="Eigenvalues of the energy's Hessian (SLEPc)")
     variant("python", default=False, description="Install the Python package equimap")
@@ -44,6 +45,10 @@ class Equimap(CMakePackage):
     depends_on("cjson")
     depends_on("zlib-api")
     depends_on("cairo+pdf+svg+png+fc+ft", when="+report")
+
+    with when("+images"):
+        depends_on("libpng")
+        depends_on("libtiff")
 
     # The threads are ours: a BLAS that brings its own makes a rank use all cores, and every small front slow.
     for library in ("openblas", "blis", "amdblis", "intel-oneapi-mkl"):
