@@ -9,7 +9,7 @@ enum { BINS = 72 };
 typedef struct {
   EqmAxis across;
   double bins[BINS], below, above, highest;
-  EqmColorScale scale; /* of the bars */
+  double limit; /* of a colour scale of ratios */
 } Distribution;
 
 static double ValueAt(const EqmAxis *axis, double place)
@@ -22,10 +22,12 @@ static double ValueAt(const EqmAxis *axis, double place)
 static void CollectRatios(const EqmPage *page, Distribution *d)
 {
   const EqmResult *const result = page->results;
-  const double limit = page->scale.limit, reach = fmin(0.999, 1.25 * (limit - 1.0));
+  const double limit = EqmColorScaleOf(EQM_SCALE_RATIO, result->ratio, result->num_cells).limit;
+  const double reach = fmin(0.999, 1.25 * (limit - 1.0));
   const PetscBool wide = (PetscBool)(limit > 2.0);
   double total = 0.0;
 
+  d->limit = limit;
   d->across = (EqmAxis){wide ? 1.0 / limit : 1.0 - reach,
                         wide ? limit : 1.0 + reach,
                         wide,
@@ -121,7 +123,8 @@ void EqmDrawHistogram(cairo_t *cairo, const EqmPage *page, EqmBox box)
   for (int b = 0; b < BINS; b++) {
     double rgb[3] = {0.106, 0.533, 0.522};
     if (!angles)
-      EqmColorOf((EqmColorScale){EQM_SCALE_RATIO, page->scale.limit}, ValueAt(&d.across, (b + 0.5) / BINS), rgb);
+      EqmColorOf(page->conformal ? (EqmColorScale){EQM_SCALE_RATIO, d.limit} : page->scale,
+                 ValueAt(&d.across, (b + 0.5) / BINS), rgb);
     DrawBarAt(cairo, box, box.x + b * box.width / BINS, box.width / BINS, box.height * EqmAxisPlace(&along, d.bins[b]),
               rgb);
   }
@@ -130,14 +133,14 @@ void EqmDrawHistogram(cairo_t *cairo, const EqmPage *page, EqmBox box)
   DrawCaption(cairo, page, angles, box);
 }
 
-/* The energy over the iterations and over the seconds, on one log scale. */
-void EqmDrawConvergence(cairo_t *cairo, const EqmResult *result, EqmBox by_iteration, EqmBox by_time)
+/* How the run went over the iterations and over the seconds, on one log scale. */
+void EqmDrawConvergence(cairo_t *cairo, const EqmPage *page, EqmBox by_iteration, EqmBox by_time)
 {
+  const EqmResult *const result = page->results;
   const PetscInt count = result->num_history;
   EqmAxis iteration = EqmAxisOf(result->iteration, count, PETSC_FALSE, "iteration");
   EqmAxis elapsed = EqmAxisOf(result->elapsed, count, PETSC_FALSE, "seconds since the program's start");
   EqmAxis energy;
-  const char *name;
   double *values;
 
   if (count == 0 || PetscMalloc1(count, &values)) {
@@ -145,8 +148,8 @@ void EqmDrawConvergence(cairo_t *cairo, const EqmResult *result, EqmBox by_itera
                 "no history: this map was not made by iteration");
     return;
   }
-  EqmResultCurve(result, values, &name);
-  energy = EqmAxisOf(values, count, PETSC_TRUE, name);
+  EqmResultCurve(result, page->curve, values);
+  energy = EqmAxisOf(values, count, PETSC_TRUE, EqmCurveName(page->curve));
   EqmDrawAxes(cairo, by_iteration, &iteration, &energy);
   EqmDrawCurve(cairo, by_iteration, &iteration, &energy, count, result->iteration, values, EQM_BLUE);
   energy.bare = PETSC_TRUE;
@@ -173,12 +176,11 @@ void EqmDrawAllCurves(cairo_t *cairo, const EqmPage *page, EqmBox by_iteration, 
 
   for (PetscInt k = 0; k < page->num; k++) {
     const EqmResult *const r = &page->results[k];
-    const char *name;
     if (r->num_history == 0 || PetscMalloc1(r->num_history, &values[k])) continue;
-    EqmResultCurve(r, values[k], &name);
+    EqmResultCurve(r, page->curve, values[k]);
     const EqmAxis axes[] = {EqmAxisOf(r->iteration, r->num_history, PETSC_FALSE, "iteration"),
                             EqmAxisOf(r->elapsed, r->num_history, PETSC_FALSE, "seconds since the program's start"),
-                            EqmAxisOf(values[k], r->num_history, PETSC_TRUE, name)};
+                            EqmAxisOf(values[k], r->num_history, PETSC_TRUE, EqmCurveName(page->curve))};
     iteration = any ? JoinAxes(iteration, axes[0]) : axes[0];
     elapsed = any ? JoinAxes(elapsed, axes[1]) : axes[1];
     energy = any ? JoinAxes(energy, axes[2]) : axes[2];

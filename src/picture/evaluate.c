@@ -11,23 +11,34 @@ PetscBool EqmResultIsConformal(const EqmResult *result)
   return (PetscBool)(!strcmp(result->command, "conformal") && result->quasi_conformal != NULL);
 }
 
-void EqmResultCurve(const EqmResult *result, double *values, const char **name)
+PetscBool EqmResultHasGradient(const EqmResult *result)
+{
+  PetscInt count = 0;
+
+  for (PetscInt k = 0; k < result->num_history && result->gradient; k++) count += result->gradient[k] > 0.;
+  return (PetscBool)(count > 1);
+}
+
+void EqmResultCurve(const EqmResult *result, EqmCurve curve, double *values)
 {
   const PetscReal *const energy = result->energy;
-  PetscReal smallest = PETSC_MAX_REAL, least_gradient = PETSC_MAX_REAL;
+  PetscReal smallest = PETSC_MAX_REAL;
 
-  *name = "energy E";
+  for (PetscInt k = 0; k < result->num_history; k++) smallest = PetscMin(smallest, energy[k]);
   for (PetscInt k = 0; k < result->num_history; k++) {
-    values[k] = energy[k];
-    smallest = PetscMin(smallest, energy[k]);
-    least_gradient = PetscMin(least_gradient, result->gradient ? result->gradient[k] : -1.);
+    if (curve == EQM_CURVE_GRADIENT)
+      values[k] = result->gradient && result->gradient[k] > 0. ? result->gradient[k] : NAN;
+    else if (curve == EQM_CURVE_EXCESS)
+      values[k] = energy[k] > smallest ? energy[k] - smallest : NAN;
+    else
+      values[k] = energy[k];
   }
-  if (!EqmResultIsConformal(result)) return;
-  *name = least_gradient > 0. ? "norm of the gradient" : "Dirichlet energy above its smallest";
-  for (PetscInt k = 0; k < result->num_history; k++) {
-    const double above = energy[k] > smallest ? energy[k] - smallest : NAN;
-    values[k] = least_gradient > 0. ? result->gradient[k] : above;
-  }
+}
+
+const char *EqmCurveName(EqmCurve curve)
+{
+  if (curve == EQM_CURVE_GRADIENT) return "norm of the gradient";
+  return curve == EQM_CURVE_EXCESS ? "energy above its smallest value" : "energy E";
 }
 
 /* Weights of cells: their measure times the density, which multiplies `weight` already. */

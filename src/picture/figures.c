@@ -86,10 +86,20 @@ static void AngleErrors(const EqmResult *r, char *text, size_t length)
     (void)snprintf(text, length, "%.3g° / %.3g°", r->angle_mean, r->angle_median);
 }
 
+static void ThreeNumbers(double a, double b, double c, char *text, size_t length)
+{
+  char one[48], two[48], three[48];
+
+  EqmNumberText(a, one, sizeof(one));
+  EqmNumberText(b, two, sizeof(two));
+  EqmNumberText(c, three, sizeof(three));
+  (void)snprintf(text, length, "%s / %s / %s", one, two, three);
+}
+
 static void Stretches(const EqmResult *r, char *text, size_t length)
 {
   if (r->cell_size == 3 && isfinite(r->quasi_mean))
-    (void)snprintf(text, length, "%.4g / %.4g / %.4g", r->quasi_mean, r->quasi_median, r->quasi_max);
+    ThreeNumbers(r->quasi_mean, r->quasi_median, r->quasi_max, text, length);
 }
 
 static void Worst(const EqmResult *r, char *text, size_t length)

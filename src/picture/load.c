@@ -215,6 +215,7 @@ PetscErrorCode EqmResultReset(EqmResult *result)
   PetscCall(PetscFree(result->energy));
   PetscCall(PetscFree(result->elapsed));
   PetscCall(PetscFree(result->gradient));
+  PetscCall(PetscFree(result->line));
   PetscCall(PetscMemzero(result, sizeof(*result)));
   PetscFunctionReturn(0);
 }

@@ -1,14 +1,11 @@
-/* What is marked in a picture: cells, landmarks. */
+/* What is marked in a picture: cells, landmarks, lines. */
 #ifdef EQM_HAVE_CAIRO
 #include "picture/view.h"
 #include <math.h>
 
-/* A ring around the place, its number beside it at `label`. */
-static void MarkPoint(cairo_t *cairo, double x, double y, double label, PetscInt cell)
+/* A ring around the place. */
+static void DrawRing(cairo_t *cairo, double x, double y)
 {
-  char text[32];
-
-  (void)snprintf(text, sizeof(text), "%" PetscInt_FMT, cell);
   cairo_new_path(cairo);
   cairo_set_line_width(cairo, 3.5);
   cairo_set_source_rgb(cairo, 1, 1, 1);
@@ -17,10 +14,18 @@ static void MarkPoint(cairo_t *cairo, double x, double y, double label, PetscInt
   cairo_set_line_width(cairo, 1.4);
   EqmSetInk(cairo, EQM_INK);
   cairo_stroke(cairo);
+}
+
+/* Its number to the right. */
+static void DrawLabel(cairo_t *cairo, double x, double y, PetscInt cell)
+{
+  char text[32];
+
+  (void)snprintf(text, sizeof(text), "%" PetscInt_FMT, cell);
   cairo_set_source_rgba(cairo, 1, 1, 1, 0.75);
-  cairo_rectangle(cairo, x + 8, label - 6, EqmTextWidth(cairo, 11, PETSC_FALSE, text) + 4, 13);
+  cairo_rectangle(cairo, x + 8, y - 6, EqmTextWidth(cairo, 11, PETSC_FALSE, text) + 4, 13);
   cairo_fill(cairo);
-  EqmDrawText(cairo, x + 10, label + 4, 11, PETSC_FALSE, EQM_LEFT, EQM_INK, text);
+  EqmDrawText(cairo, x + 10, y + 4, 11, PETSC_FALSE, EQM_LEFT, EQM_INK, text);
 }
 
 /* Nothing in front of it: nearer in the raster by more than a hundredth of the picture. */
@@ -32,9 +37,11 @@ static PetscBool IsSeen(const EqmRaster *raster, const double at[3])
   return (PetscBool)(raster->depth[(size_t)y * (size_t)raster->size + (size_t)x] < at[2] + 0.01 * raster->size);
 }
 
-void EqmDrawMarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, const EqmRaster *raster, EqmBox box)
+void EqmDrawMarks(cairo_t *cairo, const EqmView *view, const EqmRaster *raster, EqmBox box)
 {
+  const EqmResult *const result = view->result;
   double place[EQM_NUM_MARKS][2];
+  PetscInt cell[EQM_NUM_MARKS];
   int drawn = 0;
 
   for (PetscInt m = 0; m < result->num_marks; m++) {
@@ -45,6 +52,8 @@ void EqmDrawMarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, 
     EqmCameraProject(&view->camera, raster->size, centroid, at);
     if (!IsSeen(raster, at)) continue;
     const double x = box.x + at[0] * box.width / raster->size, y = box.y + at[1] * box.height / raster->size;
+    DrawRing(cairo, x, y);
+    cell[drawn] = result->mark[m];
     place[drawn][0] = x;
     place[drawn][1] = y;
     for (int k = 0; k < drawn; k++) { /* numbers do not hide each other */
@@ -53,8 +62,9 @@ void EqmDrawMarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, 
         k = -1;
       }
     }
-    MarkPoint(cairo, x, y, place[drawn++][1], result->mark[m]);
+    drawn++;
   }
+  for (int k = 0; k < drawn; k++) DrawLabel(cairo, place[k][0], place[k][1], cell[k]); /* over all the rings */
 }
 
 /* Where a point of the scene is in the box; false if something is in front of it. */
@@ -84,10 +94,55 @@ static void DrawDot(cairo_t *cairo, double x, double y, double radius, EqmInk in
     cairo_stroke(cairo);
 }
 
-/* Join the landmarks of each curve, in their order, as far as they are seen; `at` is the landmarks' places, 3 each. */
-static void DrawCurves(cairo_t *cairo, const EqmResult *result, const EqmView *view, const EqmRaster *raster,
-                       EqmBox box, const PetscReal *at, PetscBool broken)
+/* The part of a straight piece that is seen, in steps of some samples. */
+static void AddPiece(cairo_t *cairo, const EqmView *view, const EqmRaster *raster, EqmBox box, const PetscReal *from,
+                     const PetscReal *to)
 {
+  const double step = 4.0, scale = box.width / raster->size;
+  double a[3], b[3];
+  int steps;
+
+  EqmCameraProject(&view->camera, raster->size, from, a);
+  EqmCameraProject(&view->camera, raster->size, to, b);
+  steps = 1 + (int)fmin(hypot(b[0] - a[0], b[1] - a[1]) / step, raster->size);
+  for (int k = 0; k < steps; k++) {
+    double ends[2][3], middle[3];
+    for (int d = 0; d < 3; d++) {
+      for (int e = 0; e < 2; e++) ends[e][d] = a[d] + (b[d] - a[d]) * (k + e) / steps;
+      middle[d] = 0.5 * (ends[0][d] + ends[1][d]);
+    }
+    if (!IsSeen(raster, middle)) continue;
+    cairo_move_to(cairo, box.x + scale * ends[0][0], box.y + scale * ends[0][1]);
+    cairo_line_to(cairo, box.x + scale * ends[1][0], box.y + scale * ends[1][1]);
+  }
+}
+
+void EqmDrawLines(cairo_t *cairo, const EqmView *view, const EqmRaster *raster, EqmBox box)
+{
+  const EqmResult *const result = view->result;
+
+  cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
+  for (PetscInt first = 0, next; first < result->num_lines; first = next) {
+    const PetscInt curve = result->line[3 * first + 2];
+    cairo_new_path(cairo);
+    for (next = first; next < result->num_lines && result->line[3 * next + 2] == curve; next++)
+      AddPiece(cairo, view, raster, box, view->points + 3 * result->line[3 * next],
+               view->points + 3 * result->line[3 * next + 1]);
+    cairo_set_line_width(cairo, curve < 0 ? 2.0 : 4.5);
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_stroke_preserve(cairo);
+    cairo_set_line_width(cairo, curve < 0 ? 1.0 : 2.5);
+    EqmSetInk(cairo, curve < 0 ? EQM_INK : EqmInkOf(curve + 2));
+    cairo_stroke(cairo);
+  }
+  cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT);
+}
+
+/* Join the landmarks of each curve, in their order, as far as they are seen; `at` is the landmarks' places, 3 each. */
+static void DrawCurves(cairo_t *cairo, const EqmView *view, const EqmRaster *raster, EqmBox box, const PetscReal *at,
+                       PetscBool broken)
+{
+  const EqmResult *const result = view->result;
   const double dash[] = {4.0, 3.0};
 
   cairo_save(cairo);
@@ -121,15 +176,15 @@ static PetscErrorCode PlacesOfLandmarks(const EqmResult *result, const PetscReal
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmDrawLandmarks(cairo_t *cairo, const EqmResult *result, const EqmView *view, const EqmRaster *raster,
-                                EqmBox box)
+PetscErrorCode EqmDrawLandmarks(cairo_t *cairo, const EqmView *view, const EqmRaster *raster, EqmBox box)
 {
+  const EqmResult *const result = view->result;
   PetscReal *places;
 
   PetscFunctionBegin;
   PetscCall(PlacesOfLandmarks(result, view->points, &places));
-  if (result->curve) DrawCurves(cairo, result, view, raster, box, places, PETSC_FALSE);
-  if (result->curve && view->goals) DrawCurves(cairo, result, view, raster, box, view->goals, PETSC_TRUE);
+  if (result->curve) DrawCurves(cairo, view, raster, box, places, PETSC_FALSE);
+  if (result->curve && view->goals) DrawCurves(cairo, view, raster, box, view->goals, PETSC_TRUE);
   for (PetscInt k = 0; k < result->num_landmarks; k++) {
     double x, y, goal_x, goal_y;
     const PetscBool seen = PlaceOf(view, raster, box, places + 3 * k, &x, &y);

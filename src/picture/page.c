@@ -54,7 +54,7 @@ static PetscErrorCode DrawRows(cairo_t *cairo, const EqmPage *page, double pixel
   PetscFunctionBegin;
   for (PetscInt k = 0; k < page->num; k++) {
     const EqmResult *const result = &page->results[k];
-    const double height = EqmViewsHeight(result, inner);
+    const double height = EqmViewsHeight(page, result, inner);
     EqmDrawHeading(cairo, page, k, *y, page->num > 1 ? 20.0 : 30.0);
     if (page->num > 1) DrawNumber(cairo, k, *y);
     *y += page->num > 1 ? between - 20.0 : top - 62.0;
@@ -85,7 +85,7 @@ static void DrawCharts(cairo_t *cairo, const EqmPage *page, double y)
 
   if (page->num == 1) {
     EqmDrawHistogram(cairo, page, (EqmBox){EQM_PAGE_MARGIN + 36, y, 350, 180});
-    EqmDrawConvergence(cairo, page->results, by_iteration, by_time);
+    EqmDrawConvergence(cairo, page, by_iteration, by_time);
     EqmDrawTable(cairo, page, (EqmBox){1120, y - 14, EQM_PAGE_WIDTH - EQM_PAGE_MARGIN - 1120, 0});
     return;
   }
@@ -99,7 +99,7 @@ double EqmPageHeight(const EqmPage *page)
   double height = 62.0 + bar_room + ChartsHeight(page) + footer;
 
   for (PetscInt k = 0; k < page->num; k++)
-    height += EqmViewsHeight(&page->results[k], inner) + (page->num > 1 ? between + 10.0 : top - 62.0);
+    height += EqmViewsHeight(page, &page->results[k], inner) + (page->num > 1 ? between + 10.0 : top - 62.0);
   return height;
 }
 

@@ -13,7 +13,7 @@ PETSC_INTERN double EqmPageHeight(const EqmPage *page);
 PETSC_INTERN PetscErrorCode EqmDrawPage(cairo_t *cairo, const EqmPage *page, double pixels_per_unit);
 
 /* A row of pictures, `width` wide: the surface or solid, a pattern pulled back to it, its image. */
-PETSC_INTERN double EqmViewsHeight(const EqmResult *result, double width);
+PETSC_INTERN double EqmViewsHeight(const EqmPage *page, const EqmResult *result, double width);
 PETSC_INTERN PetscErrorCode EqmDrawViews(cairo_t *cairo, const EqmPage *page, const EqmResult *result, EqmBox box,
                                          double pixels_per_unit);
 
@@ -25,7 +25,7 @@ PETSC_INTERN void EqmDrawDistanceBar(cairo_t *cairo, const EqmPage *page, EqmBox
 
 /* One result: bars of the distribution of ratios or angle errors, curves of the energy. */
 PETSC_INTERN void EqmDrawHistogram(cairo_t *cairo, const EqmPage *page, EqmBox box);
-PETSC_INTERN void EqmDrawConvergence(cairo_t *cairo, const EqmResult *result, EqmBox by_iteration, EqmBox by_time);
+PETSC_INTERN void EqmDrawConvergence(cairo_t *cairo, const EqmPage *page, EqmBox by_iteration, EqmBox by_time);
 /* Several results: the curves of all of them. */
 PETSC_INTERN void EqmDrawAllCurves(cairo_t *cairo, const EqmPage *page, EqmBox by_iteration, EqmBox by_time);
 

@@ -8,12 +8,24 @@
 
 enum { EQM_MOST_RESULTS = 8 };
 
+/* What shows how the iteration went. */
+typedef enum {
+  EQM_CURVE_AUTO,   /* the energy; of conformal maps, whose energy is far from zero, the gradient, or else the excess */
+  EQM_CURVE_ENERGY, /* E */
+  EQM_CURVE_EXCESS, /* what E is above its smallest value */
+  EQM_CURVE_GRADIENT /* the norm of the gradient */
+} EqmCurve;
+
 /* How a report is drawn. */
 typedef struct {
   PetscInt width;    /* of the page in pixels */
   PetscBool has_eye; /* use `azimuth` and `elevation` instead of a view chosen for the mesh */
   PetscReal azimuth, elevation;
-  char up[4]; /* the axis that points up: x, y, z, -x, -y, -z; empty: guessed */
+  char up[4];                     /* the axis that points up: x, y, z, -x, -y, -z; empty: guessed */
+  PetscInt curve;                 /* an EqmCurve */
+  char start[PETSC_MAX_PATH_LEN]; /* another map of the same mesh, drawn beside the image; empty: none */
+  char lines[PETSC_MAX_PATH_LEN]; /* a CSV file of curves on the mesh; empty: none */
+  PetscReal sharp;                /* edges where faces meet at more than so many degrees are drawn; 0: none */
 } EqmReportOptions;
 
 /* EqmReportWrite - draw a page of results into `picture`, its format by suffix: .png .pdf .svg .html. Several results,
@@ -53,6 +65,7 @@ typedef struct {
   EqmStatistics ratio_statistics;
   EqmWeightedRatio weighted;
   PetscInt num_marks, mark[EQM_NUM_MARKS]; /* cells that are folded or distorted most, the worst first */
+  PetscInt num_lines, *line; /* drawn on surface and image: two vertices each, and a curve's number, -1 for an edge */
   PetscInt num_history;
   PetscReal *iteration, *energy, *elapsed, *gradient; /* per row of the history */
 } EqmResult;
@@ -62,13 +75,18 @@ PETSC_INTERN PetscErrorCode EqmResultLoad(const char *file, EqmResult *result);
 PETSC_INTERN PetscErrorCode EqmResultReset(EqmResult *result);
 /* Compute what is not stored: weights, statistics, distances, the worst cells. */
 PETSC_INTERN PetscErrorCode EqmResultEvaluate(EqmResult *result);
+/* Find the lines to draw: the curves of a file, sharp edges. Errors: EQM_ERR_IO (no table of curves), EQM_ERR_USAGE (no
+   such vertex). */
+PETSC_INTERN PetscErrorCode EqmResultFindLines(EqmResult *result, const EqmReportOptions *options);
 
 /* What the pictures of a result show: ratios, or for angle-preserving maps the quasi-conformal distortion. */
 PETSC_INTERN PetscBool EqmResultIsConformal(const EqmResult *result);
-/* What shows how the iteration went, per row of the history, and its name: the energy; of a conformal map, whose energy
-   is far from zero, the norm of the gradient or, where the method has none, what the energy is above its smallest
-   value, NaN there. */
-PETSC_INTERN void EqmResultCurve(const EqmResult *result, double *values, const char **name);
+/* Has the history norms of gradients? Some methods take none. */
+PETSC_INTERN PetscBool EqmResultHasGradient(const EqmResult *result);
+/* How the iteration went, per row of the history; `curve` is not EQM_CURVE_AUTO. NaN where there is none or it is
+   zero. */
+PETSC_INTERN void EqmResultCurve(const EqmResult *result, EqmCurve curve, double *values);
+PETSC_INTERN const char *EqmCurveName(EqmCurve curve);
 
 /* Triangles to draw, at the places of one array of points; each belongs to a cell. */
 typedef struct {
@@ -177,10 +195,14 @@ typedef struct {
   const EqmResult *results;
   EqmColorScale scale, distances; /* of the pictures; of a registration's distances */
   PetscBool conformal;            /* all results are: the colours show what becomes of angles */
+  EqmCurve curve;                 /* not EQM_CURVE_AUTO */
+  const EqmResult *start;         /* another map of the first result's mesh, drawn beside its image; NULL: none */
   EqmReportOptions options;
 } EqmPage;
 
-PETSC_INTERN EqmPage EqmPageOf(PetscInt num_results, const EqmResult *results, const EqmReportOptions *options);
+/* `start` may be NULL. */
+PETSC_INTERN EqmPage EqmPageOf(PetscInt num_results, const EqmResult *results, const EqmResult *start,
+                               const EqmReportOptions *options);
 /* What is coloured of a result on that page, per cell. */
 PETSC_INTERN const PetscReal *EqmPageValues(const EqmPage *page, const EqmResult *result);
 

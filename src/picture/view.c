@@ -16,8 +16,9 @@ static EqmPattern PatternOf(const EqmResult *result)
   return strcmp(result->command, "square") ? EQM_PATTERN_DISK : EQM_PATTERN_SQUARE;
 }
 
-static EqmScene SceneOf(const EqmPage *page, const EqmResult *result, const EqmView *view)
+static EqmScene SceneOf(const EqmPage *page, const EqmView *view)
 {
+  const EqmResult *const result = view->result;
   EqmScene scene = {.result = result,
                     .faces = view->faces,
                     .normals = view->normals,
@@ -55,18 +56,18 @@ static PetscErrorCode PaintRaster(cairo_t *cairo, const EqmRaster *raster, const
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmPaintView(cairo_t *cairo, const EqmPage *page, const EqmResult *result, const EqmView *view,
-                            EqmBox box, int size)
+PetscErrorCode EqmPaintView(cairo_t *cairo, const EqmPage *page, const EqmView *view, EqmBox box, int size)
 {
-  const EqmScene scene = SceneOf(page, result, view);
+  const EqmScene scene = SceneOf(page, view);
   EqmRaster raster;
 
   PetscFunctionBegin;
   PetscCall(EqmRasterCreate(OVERSAMPLING * size, &raster));
-  PetscCall(EqmRasterDraw(&raster, &view->camera, view->faces, view->points, result->num_vertices));
+  PetscCall(EqmRasterDraw(&raster, &view->camera, view->faces, view->points, view->result->num_vertices));
   PetscCall(PaintRaster(cairo, &raster, &scene, box, size));
-  if (view->marked) EqmDrawMarks(cairo, result, view, &raster, box);
-  if (view->landmarks) PetscCall(EqmDrawLandmarks(cairo, result, view, &raster, box));
+  if (view->lined) EqmDrawLines(cairo, view, &raster, box);
+  if (view->marked) EqmDrawMarks(cairo, view, &raster, box);
+  if (view->landmarks) PetscCall(EqmDrawLandmarks(cairo, view, &raster, box));
   PetscCall(EqmRasterDestroy(&raster));
   PetscFunctionReturn(0);
 }

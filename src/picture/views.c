@@ -4,14 +4,15 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_VIEWS = 5 };
+enum { MOST_VIEWS = 6, MOST_CUTS = 4 };
 
 /* A row, and what its views point to. */
 typedef struct {
   int count;
   EqmView view[MOST_VIEWS];
-  EqmFaces surface, cut[3];
+  EqmFaces surface, cut[MOST_CUTS];
   float *normals[MOST_VIEWS];
+  char start_title[96];
 } Row;
 
 /* Feature curves, which are drawn in the target, too (000 figure 6). */
@@ -20,22 +21,21 @@ static PetscBool HasCurves(const EqmResult *result)
   return (PetscBool)(result->curve && result->landmark_target && result->cell_size == 3);
 }
 
-static int NumViews(const EqmResult *result)
+static int NumViews(const EqmPage *page, const EqmResult *result)
 {
   if (result->target) return HasCurves(result) ? 5 : 4;
-  if (result->cell_size == 4) return 5;
-  return result->dim == 2 ? 3 : 4;
+  return (result->cell_size == 4 ? 5 : result->dim == 2 ? 3 : 4) + (page->start ? 1 : 0);
 }
 
 /* The views are square and stand in one row, a title above each. */
-static double SideOf(const EqmResult *result, double width)
+static double SideOf(const EqmPage *page, const EqmResult *result, double width)
 {
-  return fmin(width / NumViews(result) - 24.0, 466.0);
+  return fmin(width / NumViews(page, result) - 24.0, 466.0);
 }
 
-double EqmViewsHeight(const EqmResult *result, double width)
+double EqmViewsHeight(const EqmPage *page, const EqmResult *result, double width)
 {
-  return SideOf(result, width) + 34.0;
+  return SideOf(page, result, width) + 34.0;
 }
 
 static PetscErrorCode ResetRow(Row *row)
@@ -43,7 +43,7 @@ static PetscErrorCode ResetRow(Row *row)
   PetscFunctionBegin;
   for (int k = 0; k < MOST_VIEWS; k++) PetscCall(PetscFree(row->normals[k]));
   PetscCall(EqmFacesReset(&row->surface));
-  for (int k = 0; k < 3; k++) PetscCall(EqmFacesReset(&row->cut[k]));
+  for (int k = 0; k < MOST_CUTS; k++) PetscCall(EqmFacesReset(&row->cut[k]));
   PetscFunctionReturn(0);
 }
 
@@ -55,7 +55,14 @@ static PetscErrorCode AddView(const EqmResult *result, const char *title, const 
 
   PetscFunctionBegin;
   PetscCall(EqmFacesNormals(faces, points, result->num_vertices, normals));
-  row->view[row->count++] = (EqmView){title, faces, points, *normals, camera, paint, PETSC_FALSE, PETSC_FALSE, NULL};
+  row->view[row->count++] = (EqmView){.result = result,
+                                      .title = title,
+                                      .faces = faces,
+                                      .points = points,
+                                      .normals = *normals,
+                                      .camera = camera,
+                                      .paint = paint,
+                                      .lined = (PetscBool)(faces == &row->surface)};
   PetscFunctionReturn(0);
 }
 
@@ -81,22 +88,27 @@ static PetscErrorCode AddSurface(const EqmPage *page, const EqmResult *result, E
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AddImage(const EqmResult *result, Row *row)
+/* An image in the plane, from above. */
+static void AddFlat(const EqmResult *result, const char *title, Row *row)
 {
   EqmCamera flat = EqmCameraFlat();
 
+  EqmCameraFit(&flat, &row->surface, result->images);
+  row->view[row->count++] = (EqmView){.result = result,
+                                      .title = title,
+                                      .faces = &row->surface,
+                                      .points = result->images,
+                                      .camera = flat,
+                                      .paint = EQM_PAINT_CELLS,
+                                      .lined = PETSC_TRUE};
+}
+
+static PetscErrorCode AddImage(const EqmResult *result, Row *row)
+{
   PetscFunctionBegin;
   if (result->dim == 2) {
-    EqmCameraFit(&flat, &row->surface, result->images);
-    row->view[row->count++] = (EqmView){"Image, worst cells numbered",
-                                        &row->surface,
-                                        result->images,
-                                        NULL,
-                                        flat,
-                                        EQM_PAINT_CELLS,
-                                        PETSC_TRUE,
-                                        PETSC_FALSE,
-                                        NULL};
+    AddFlat(result, "Image, worst cells numbered", row);
+    row->view[row->count - 1].marked = PETSC_TRUE;
     PetscFunctionReturn(0);
   }
   PetscCall(
@@ -121,8 +133,32 @@ static PetscErrorCode AddCut(const EqmResult *result, const char *title, const P
   PetscFunctionReturn(0);
 }
 
+/* The other map, as the image is seen. */
+static PetscErrorCode AddStart(const EqmPage *page, Row *row)
+{
+  static const double x[3] = {1, 0, 0};
+  const EqmResult *const start = page->start;
+  char energy[48];
+
+  PetscFunctionBegin;
+  if (!start) PetscFunctionReturn(0);
+  EqmNumberText(start->energy_final, energy, sizeof(energy));
+  if (strcmp(start->command, page->results->command)) /* its energy is another one */
+    (void)snprintf(row->start_title, sizeof(row->start_title), "Beside it: %.30s, %.30s", start->command,
+                   start->method);
+  else
+    (void)snprintf(row->start_title, sizeof(row->start_title), "Start, energy %s", energy);
+  if (start->cell_size == 4)
+    PetscCall(AddCut(start, row->start_title, start->images, SphereCamera(20.0), x, MOST_CUTS - 1, row));
+  else if (start->dim == 2)
+    AddFlat(start, row->start_title, row);
+  else
+    PetscCall(AddView(start, row->start_title, &row->surface, start->images, SphereCamera(20.0), EQM_PAINT_CELLS, row));
+  PetscFunctionReturn(0);
+}
+
 /* The boundary, and three cuts: one of the solid, two of the ball. */
-static PetscErrorCode AddSolid(const EqmResult *result, EqmCamera camera, Row *row)
+static PetscErrorCode AddSolid(const EqmPage *page, const EqmResult *result, EqmCamera camera, Row *row)
 {
   static const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0};
 
@@ -133,6 +169,7 @@ static PetscErrorCode AddSolid(const EqmResult *result, EqmCamera camera, Row *r
   PetscCall(AddView(result, "Graticule of the ball, pulled back", &row->surface, result->vertices, camera,
                     EQM_PAINT_PATTERN, row));
   PetscCall(AddCut(result, "Solid, cut open", result->vertices, camera, camera.toward, 0, row));
+  PetscCall(AddStart(page, row));
   PetscCall(AddCut(result, "Image, cut at x = 0", result->images, SphereCamera(20.0), x, 1, row));
   PetscCall(AddCut(result, "Image, cut at y = 0", result->images, SphereCamera(70.0), y, 2, row));
   PetscFunctionReturn(0);
@@ -193,9 +230,10 @@ static PetscErrorCode MakeRow(const EqmPage *page, const EqmResult *result, Row 
   if (result->target) {
     PetscCall(AddRegistered(result, camera, row));
   } else if (result->cell_size == 4) {
-    PetscCall(AddSolid(result, camera, row));
+    PetscCall(AddSolid(page, result, camera, row));
   } else {
     PetscCall(AddSurface(page, result, camera, row));
+    PetscCall(AddStart(page, row));
     PetscCall(AddImage(result, row));
   }
   PetscFunctionReturn(0);
@@ -204,7 +242,7 @@ static PetscErrorCode MakeRow(const EqmPage *page, const EqmResult *result, Row 
 PetscErrorCode EqmDrawViews(cairo_t *cairo, const EqmPage *page, const EqmResult *result, EqmBox box,
                             double pixels_per_unit)
 {
-  const double side = SideOf(result, box.width);
+  const double side = SideOf(page, result, box.width);
   Row row;
 
   PetscFunctionBegin;
@@ -213,7 +251,7 @@ PetscErrorCode EqmDrawViews(cairo_t *cairo, const EqmPage *page, const EqmResult
     const double middle = box.x + (k + 0.5) * box.width / row.count;
     const EqmBox place = {middle - 0.5 * side, box.y + 34.0, side, side};
     EqmDrawText(cairo, middle, box.y + 14, side < 320 ? 13 : 15, PETSC_TRUE, EQM_CENTER, EQM_INK, row.view[k].title);
-    PetscCall(EqmPaintView(cairo, page, result, &row.view[k], place, (int)(side * pixels_per_unit + 0.5)));
+    PetscCall(EqmPaintView(cairo, page, &row.view[k], place, (int)(side * pixels_per_unit + 0.5)));
   }
   PetscCall(ResetRow(&row));
   PetscFunctionReturn(0);

@@ -110,6 +110,38 @@ def check_kinds(program):
         program.succeed("report", "hills.h5", "-o", "wrong.png", *wrong, codes=(2,))
 
 
+def picture(program, *options):
+    program.succeed("report", *options, "-o", "drawn.png", "-width", "500")
+    with open("drawn.png", "rb") as file:
+        return file.read()
+
+
+def check_beside(program):
+    """A start beside the image, curves of another quantity, lines on the mesh; what does not fit is refused."""
+    program.succeed("disk", "hills.obj", "-o", "start.h5", "-max_it", "0", codes=(4,))
+    with h5py.File("hills.h5") as file:
+        cells = file["/mesh/cells"][...]
+        vertices = len(file["/mesh/vertices"])
+    for name, rows in (("lines", [(0, cells[0, 0]), (0, cells[0, 1]), (1, cells[9, 0]), (1, cells[9, 2])]),
+                       ("single", [(0, cells[0, 0]), (1, cells[9, 0])]), ("wrong", [(0, 0), (0, vertices)])):
+        with open(name + ".csv", "w", encoding="utf-8") as file:
+            file.write("curve,vertex\n" + "".join(f"{curve},{vertex}\n" for curve, vertex in rows))
+    plain = picture(program, "hills.h5")
+    assert plain == picture(program, "hills.h5", "-convergence", "energy")
+    assert plain == picture(program, "hills.h5", "-lines", "single.csv") == picture(program, "hills.h5", "-sharp", "179")
+    others = [picture(program, "hills.h5", *options) for options in (
+        ("-start", "start.h5"), ("-lines", "lines.csv"), ("-sharp", "5"), ("-convergence", "excess"), ("-convergence", "gradient"))]
+    assert len({plain, *others}) == 6
+    program.succeed("generate", "hills", "-n", "700", "-o", "other.obj")
+    program.succeed("disk", "other.obj", "-o", "other.h5", "-max_it", "0", codes=(4,))
+    for wrong in (("hills.h5", "-start", "other.h5"), ("hills.h5", "start.h5", "-start", "start.h5"), ("hills.h5", "-lines", "wrong.csv"),
+                  ("hills.h5", "-sharp", "-3"), ("hills.h5", "-convergence", "speed")):
+        result = program.succeed("report", *wrong, "-o", "wrong.png", codes=(2,))
+        assert len(program.messages(result)) == 1, result.stderr
+    program.succeed("report", "hills.h5", "-lines", "absent.csv", "-o", "wrong.png", codes=(6,))
+    assert not os.path.exists("wrong.png")
+
+
 def main(program):
     program.succeed("generate", "hills", "-n", "800", "-o", "hills.obj")
     program.succeed("disk", "hills.obj", "-o", "hills.h5", codes=(0, 4))
@@ -141,6 +173,7 @@ def main(program):
     check_figures(program)
     check_old(program)
     check_kinds(program)
+    check_beside(program)
     print("report: png, svg, pdf and html drawn; figures are those of the results; wrong calls refused")
 
 
