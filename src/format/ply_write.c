@@ -34,9 +34,24 @@ static void PrintFieldHeader(EqmAtomicFile *file, const EqmField *field)
   }
 }
 
+/* The field that MeshLab shall colour by, which it does by the name of quality: the ratio of a map. NULL: none. */
+static const EqmField *FindQuality(const EqmField *fields, PetscInt num_fields, PetscBool on_cells)
+{
+  const EqmField *found = NULL;
+
+  for (PetscInt f = 0; f < num_fields; ++f) {
+    if (fields[f].on_cells != on_cells) continue;
+    if (!strcmp(fields[f].name, "quality")) return NULL;
+    if (fields[f].width == 1 && !strcmp(fields[f].name, on_cells ? "ratio" : "vertex_ratio")) found = &fields[f];
+  }
+  return found;
+}
+
 static void WriteFields(EqmAtomicFile *file, const EqmField *fields, PetscInt num_fields, PetscBool on_cells,
                         PetscInt row)
 {
+  const EqmField *const quality = FindQuality(fields, num_fields, on_cells);
+
   for (PetscInt f = 0; f < num_fields; ++f) {
     const size_t width = (size_t)fields[f].width;
     const unsigned char byte = IsColour(&fields[f]) ? ToByte(fields[f].values[row]) : 0;
@@ -47,9 +62,21 @@ static void WriteFields(EqmAtomicFile *file, const EqmField *fields, PetscInt nu
     else
       EqmAtomicWrite(file, fields[f].values + width * (size_t)row, width * sizeof(double));
   }
+  if (quality) {
+    const float value = (float)quality->values[row];
+    EqmAtomicWrite(file, &value, sizeof(value));
+  }
 }
 
 typedef enum { TEXTURE_NONE, TEXTURE_OF_VERTICES, TEXTURE_OF_CORNERS } Texture;
+
+static void PrintFieldHeaders(EqmAtomicFile *file, const EqmField *fields, PetscInt num_fields, PetscBool on_cells)
+{
+  for (PetscInt f = 0; f < num_fields; ++f) {
+    if (fields[f].on_cells == on_cells) PrintFieldHeader(file, &fields[f]);
+  }
+  if (FindQuality(fields, num_fields, on_cells)) EqmAtomicPrint(file, "property float quality\n");
+}
 
 static void PrintHeader(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
                         Texture texture)
@@ -58,14 +85,10 @@ static void PrintHeader(EqmAtomicFile *file, const EqmSerialMesh *mesh, const Eq
                  (long long)mesh->num_vertices);
   EqmAtomicPrint(file, "property double x\nproperty double y\nproperty double z\n");
   if (texture == TEXTURE_OF_VERTICES) EqmAtomicPrint(file, "property double s\nproperty double t\n");
-  for (PetscInt f = 0; f < num_fields; ++f) {
-    if (!fields[f].on_cells) PrintFieldHeader(file, &fields[f]);
-  }
+  PrintFieldHeaders(file, fields, num_fields, PETSC_FALSE);
   EqmAtomicPrint(file, "element face %lld\nproperty list uchar int vertex_indices\n", (long long)mesh->num_cells);
   if (texture == TEXTURE_OF_CORNERS) EqmAtomicPrint(file, "property list uchar float texcoord\n");
-  for (PetscInt f = 0; f < num_fields; ++f) {
-    if (fields[f].on_cells) PrintFieldHeader(file, &fields[f]);
-  }
+  PrintFieldHeaders(file, fields, num_fields, PETSC_TRUE);
   EqmAtomicPrint(file, "end_header\n");
 }
 

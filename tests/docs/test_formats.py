@@ -1,6 +1,7 @@
 """The table of docs/formats.md: what it says is read and written is, and other programs read what we write.
 
-usage: python3 test_formats.py EQUIMAP
+usage: python3 test_formats.py EQUIMAP [all]
+With `all` also the readers that take seconds to start: ParaView, Workbench, Gmsh, Blender.
 """
 import os
 import re
@@ -90,15 +91,54 @@ def read_workbench(name):
     return numpy.array(points.split(), float).reshape(-1, 3), numpy.array(cells.split(), int).reshape(-1, 3)
 
 
+BLENDER = """
+import sys, bpy
+for name in sys.argv[sys.argv.index("--") + 1:]:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    if name.endswith(".obj"):
+        bpy.ops.wm.obj_import(filepath=name)
+    elif name.endswith(".ply"):
+        bpy.ops.import_mesh.ply(filepath=name)
+    else:
+        bpy.ops.import_mesh.stl(filepath=name)
+    mesh = bpy.data.meshes[0]
+    with open(name + ".read.txt", "w") as stream:
+        for vertex in mesh.vertices:
+            print("v", *vertex.co, file=stream)
+        for face in mesh.polygons:
+            print("f", *face.vertices, file=stream)
+        for corner in mesh.uv_layers.active.data if mesh.uv_layers else ():
+            print("t", *corner.uv, file=stream)
+"""
+
+
+def numbers_of(name, letter):
+    with open(name + ".read.txt", encoding="utf-8") as stream:
+        return numpy.array([line.split()[1:] for line in stream if line.startswith(letter)], float)
+
+
+def read_blender(name):
+    """What one Blender has read of all files (run_blender)."""
+    return numbers_of(name, "v"), numbers_of(name, "f").astype(int)
+
+
+def run_blender(program, names):
+    program.write("blend.py", BLENDER)
+    subprocess.run(["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "1", "-P", program.file("blend.py"), "--",
+                    *map(program.file, names)], check=True, stdout=subprocess.DEVNULL)
+
+
 READERS = {"h5py": read_h5py, "meshio": read_meshio, "nibabel": read_nibabel, "gmsh": read_gmsh, "ParaView": read_paraview,
-           "Workbench": read_workbench}
+           "Workbench": read_workbench, "Blender": read_blender}
 
 
-def available():
+def available(every):
+    """The readers that are installed; of those that are slow only if they are asked for."""
     there = {"h5py"}
     there |= {name for name in ("meshio", "nibabel") if subprocess.run([sys.executable, "-c", "import " + name],
                                                                       stderr=subprocess.DEVNULL).returncode == 0}
-    there |= {name for name, command in (("gmsh", "gmsh"), ("ParaView", "pvpython"), ("Workbench", "wb_command")) if shutil.which(command)}
+    slow = {"gmsh": "gmsh", "ParaView": "pvpython", "Workbench": "wb_command", "Blender": "blender"}
+    there |= {name for name, command in slow.items() if every and shutil.which(command)}
     return there
 
 
@@ -130,8 +170,34 @@ def check_same(what, points, cells, other_points, other_cells):
     assert difference < 1e-5, f"{what}: corners differ by {difference}"
 
 
+def check_textures(program):
+    """Blender finds the map in its UV editor: of a surface with its map as texture coordinates, and of a result in MeshLab's way."""
+    program.succeed("generate", "hills", "-n", 300, "-o", "scan.obj")
+    for suffix in ("obj", "ply"):
+        program.succeed("square", "scan.obj", "-o", f"uv_{suffix}.h5", "-uv", f"uv.{suffix}", "-quiet", codes=(0, 4))
+    run_blender(program, ["uv.obj", "uv.ply"])
+    for suffix in ("obj", "ply"):
+        name = program.file(f"uv.{suffix}")
+        with h5py.File(program.file(f"uv_{suffix}.h5")) as file:
+            images, cells = file["/map/coordinates"][...], file["/mesh/cells"][...]
+        assert (numbers_of(name, "f") == cells).all() and abs(numbers_of(name, "t").reshape(-1, 3, 2) - images[cells]).max() < 1e-5, name
+
+
+def check_quality(program):
+    """The ratio under the name by which MeshLab colours, and still under its own."""
+    program.succeed("generate", "head", "-n", 200, "-o", "scan.ply")
+    program.succeed("sphere", "scan.ply", "-o", "image.h5,image.ply", "-quiet", codes=(0, 4))
+    program.succeed("convert", "image.ply", "image.vtu")
+    program.succeed("convert", "image.ply", "again.h5")
+    with h5py.File(program.file("image.h5")) as ours, h5py.File(program.file("again.h5")) as read:
+        for path, quality in (("/cell/ratio", "/cell/quality"), ("/vertex/vertex_ratio", "/vertex/quality")):
+            assert abs(read[quality][...] - ours[path.replace("vertex_", "")][...]).max() < 1e-6
+            assert (read[path][...] == ours[path.replace("vertex_", "")][...]).all()
+
+
 def main():
-    rows, there = table(), available()
+    every = sys.argv[2:] == ["all"]
+    rows, there = table(), available(every)
     count = 0
     with tempfile.TemporaryDirectory() as folder:
         program = Program(sys.argv[1], 1, folder)
@@ -142,6 +208,10 @@ def main():
                   for reader in readers]
         if "ParaView" in there:
             run_paraview(program, [file_name(kind, suffix) for kind, suffix, reader in wanted if reader == "ParaView"])
+        if "Blender" in there:
+            run_blender(program, [file_name(kind, suffix) for kind, suffix, reader in wanted if reader == "Blender"])
+            check_textures(program)
+        check_quality(program)
         for kind, suffix, reader in wanted:
             if reader in there:
                 name = program.file(file_name(kind, suffix))
