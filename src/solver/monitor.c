@@ -17,7 +17,8 @@ static PetscReal IterationsLeft(EqmSolver solver, PetscInt recent)
   const PetscReal by_ratio = set->ratio_tol > 0. ? PetscSqr(set->ratio_tol) * solver->iterate->totals.total : 0.;
   const PetscReal target = PetscMax(by_ratio, set->energy_target), left = set->max_it - now->iteration;
 
-  if (!(target > 0.) || !(now->energy > target) || !(then->energy > now->energy)) return left;
+  if (target > 0. && now->energy <= target) return 0.;
+  if (!(target > 0.) || !(then->energy > now->energy)) return left;
   return PetscMin(left, PetscCeilReal(recent * PetscLogReal(now->energy / target) /
                                       PetscLogReal(then->energy / now->energy)));
 }
