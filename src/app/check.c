@@ -82,7 +82,7 @@ static PetscErrorCode PrintCounts(const CheckReport *report)
                         d->num_components, solid ? "boundary surfaces" : "boundary loops", d->num_boundary_loops,
                         d->euler_characteristic));
   if (d->genus >= 0) PetscCall(PetscPrintf(comm, ", genus %" PetscInt64_FMT, d->genus));
-  PetscCall(PetscPrintf(comm, "\n  %-16s  %g (cells from %.3g to %.3g)\n", solid ? "volume" : "area",
+  PetscCall(PetscPrintf(comm, "\n  %-16s  %.6g (cells from %.3g to %.3g)\n", solid ? "volume" : "area",
                         (double)d->measure, (double)d->smallest_cell, (double)d->largest_cell));
   PetscCall(PetscPrintf(comm, "  worst quality     %.3g (0 flat, 1 equilateral)\n", (double)d->worst_cell_quality));
   PetscFunctionReturn(0);

@@ -111,7 +111,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   }
   if (!options->has_output) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "no output named; add -o OUT.h5");
   if (!(options->radius > 0.) || PetscIsInfOrNanReal(options->radius))
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-radius %g: give a positive number", (double)options->radius);
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-radius %.6g: give a positive number", (double)options->radius);
   if (options->hessian_eigenvalues < 0)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-hessian_eigenvalues: give 0 or more");
   if (options->hessian == 1 && strcmp(line->command, "sphere"))

@@ -48,7 +48,7 @@ static PetscErrorCode ParseLine(Column *column)
     return EqmRejectAt(in, line, EQM_ERR_IO, "the last column is not a number");
   }
   if (!(value > 0) || value > PETSC_MAX_REAL) {
-    return EqmRejectAt(in, line, EQM_ERR_MESH, "the density %g is not positive and finite", (double)value);
+    return EqmRejectAt(in, line, EQM_ERR_MESH, "the density %.6g is not positive and finite", (double)value);
   }
   return Append(column, value);
 }
@@ -159,7 +159,7 @@ static PetscErrorCode CheckSpan(EqmSoup soup, const char *file, const PetscReal 
   if (ends[0] * ends[1] >= 1. / most || soup->num_cells == 0) PetscFunctionReturn(0);
   EqmFail(
       soup->comm, EQM_ERR_MESH,
-      "%s: the densities run from %g to %g; more than a factor of %g between them no arithmetic of doubles resolves",
+      "%s: the densities run from %.6g to %.6g; more than a factor of %.6g between them no arithmetic of doubles resolves",
       file, (double)ends[0], (double)(1. / ends[1]), (double)most);
 }
 

@@ -20,7 +20,7 @@ PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject)
                        "what is free)",
                        "EqmLinearCreate", limit, &limit, NULL));
   if (!(limit >= 0.))
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-memory_limit %g: give a number of GiB, 0 for what is free",
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-memory_limit %.6g: give a number of GiB, 0 for what is free",
             (double)limit);
   PetscFunctionReturn(0);
 }

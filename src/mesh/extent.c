@@ -44,7 +44,7 @@ PetscErrorCode EqmSoupScale(EqmSoup soup, PetscReal factor)
 {
   PetscFunctionBegin;
   if (!(factor > 0.) || PetscIsInfReal(factor))
-    EqmFail(soup->comm, EQM_ERR_USAGE, "a mesh cannot be scaled by %g: the factor must be positive", (double)factor);
+    EqmFail(soup->comm, EQM_ERR_USAGE, "a mesh cannot be scaled by %.6g: the factor must be positive", (double)factor);
   for (PetscInt i = 0; i < 3 * (soup->vertex_end - soup->vertex_start); i++) soup->vertices[i] *= factor;
   for (PetscInt i = 0; soup->edge_length && i < 3 * (soup->cell_end - soup->cell_start); i++)
     soup->edge_length[i] *= factor;

@@ -30,7 +30,7 @@ PetscErrorCode EqmSoupAddNoise(EqmSoup soup, PetscReal sigma, PetscInt seed)
 
   PetscFunctionBegin;
   if (!(sigma >= 0.) || PetscIsInfReal(sigma))
-    EqmFail(soup->comm, EQM_ERR_USAGE, "-noise %g: give a length, 0 or more", (double)sigma);
+    EqmFail(soup->comm, EQM_ERR_USAGE, "-noise %.6g: give a length, 0 or more", (double)sigma);
   if (sigma == 0.) PetscFunctionReturn(0);
   if (soup->cell_size != 3)
     EqmFail(soup->comm, EQM_ERR_USAGE, "-noise is for surfaces of triangles; %s is none", soup->file);

@@ -225,7 +225,7 @@ static PetscErrorCode JudgeStretch(EqmMethod method, PetscReal fall)
   fp->ended = (PetscBool)(fall <= fp->eps);
   if (fp->ended)
     PetscCall(PetscSNPrintf(method->message, sizeof(method->message),
-                            "the stretch energy fell by no more than %g in a step", (double)fp->eps));
+                            "the stretch energy fell by no more than %.6g in a step", (double)fp->eps));
   PetscFunctionReturn(0);
 }
 

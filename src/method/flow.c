@@ -94,7 +94,7 @@ PetscErrorCode EqmFlowSetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
       "-flow_moebius",
       "Euler methods: centre by a Mobius map instead of projecting f - c after each step (qiem: of phase II)",
       "EqmSolverSetFromOptions", set->moebius, &set->moebius, NULL));
-  if (set->step < 0.) EqmFail(method->comm, EQM_ERR_USAGE, "-flow_step %g: give 0 or more", (double)set->step);
+  if (set->step < 0.) EqmFail(method->comm, EQM_ERR_USAGE, "-flow_step %.6g: give 0 or more", (double)set->step);
   PetscFunctionReturn(0);
 }
 
@@ -105,7 +105,7 @@ PetscErrorCode EqmFlowJudge(EqmMethod method, PetscReal change, PetscBool *ended
   PetscFunctionBegin;
   *ended = (PetscBool)(PetscAbsReal(change) < set->tol);
   if (*ended) {
-    PetscCall(PetscSNPrintf(method->message, sizeof(method->message), "the energy changed by less than %g in a step",
+    PetscCall(PetscSNPrintf(method->message, sizeof(method->message), "the energy changed by less than %.6g in a step",
                             (double)set->tol));
   }
   PetscFunctionReturn(0);

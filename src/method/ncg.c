@@ -177,7 +177,7 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
   PetscCall(PetscOptionsReal("-ncg_c2", "ncg, wolfe: c2 of (22b), which 000 Theorem 2 wants below one half",
                              "EqmSolverSetFromOptions", ncg->c2, &ncg->c2, NULL));
   if (!(ncg->c2 > 1e-4 && ncg->c2 < 1.))
-    EqmFail(method->comm, EQM_ERR_USAGE, "-ncg_c2 %g: give a number between c1 = 1e-4 and 1; the theorem wants < .5",
+    EqmFail(method->comm, EQM_ERR_USAGE, "-ncg_c2 %.6g: give a number between c1 = 1e-4 and 1; the theorem wants < .5",
             (double)ncg->c2);
   PetscFunctionReturn(0);
 }

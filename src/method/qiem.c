@@ -70,7 +70,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &q->start));
   PetscCall(EqmFlowAccept(method->problem, iterate, &iterate->place, 0.));
   q->energy = iterate->totals.energy;
-  PetscCall(EqmProblemNotify(method->problem, "first time step of 004 Algorithm 5.1: %g\n", (double)q->dt0));
+  PetscCall(EqmProblemNotify(method->problem, "first time step of 004 Algorithm 5.1: %.6g\n", (double)q->dt0));
   PetscFunctionReturn(0);
 }
 
@@ -304,7 +304,7 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
                              "EqmSolverSetFromOptions", q->factor, &q->factor, NULL));
   PetscCall(PetscOptionsReal("-qiem_rise", "qiem: by how much the energy may rise in a step of phase II (epsilon)",
                              "EqmSolverSetFromOptions", q->rise, &q->rise, NULL));
-  if (q->factor < 1.) EqmFail(method->comm, EQM_ERR_USAGE, "-qiem_factor %g: give 1 or more", (double)q->factor);
+  if (q->factor < 1.) EqmFail(method->comm, EQM_ERR_USAGE, "-qiem_factor %.6g: give 1 or more", (double)q->factor);
   PetscFunctionReturn(0);
 }
 

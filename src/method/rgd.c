@@ -169,7 +169,7 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
   PetscCall(PetscOptionsReal("-rgd_alpha0", "rgd, interpolation: the step length that is tried first",
                              "EqmSolverSetFromOptions", rgd->alpha0, &rgd->alpha0, NULL));
   if (!(rgd->alpha0 > 0.) || PetscIsInfOrNanReal(rgd->alpha0))
-    EqmFail(method->comm, EQM_ERR_USAGE, "-rgd_alpha0 %g: give a length above 0", (double)rgd->alpha0);
+    EqmFail(method->comm, EQM_ERR_USAGE, "-rgd_alpha0 %.6g: give a length above 0", (double)rgd->alpha0);
   PetscCall(PetscOptionsEnum("-rgd_first_trial",
                              "rgd, interpolation: try -rgd_alpha0 first in every step, or after the first one the "
                              "length of Nocedal and Wright (3.60)",

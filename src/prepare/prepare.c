@@ -82,11 +82,11 @@ PetscErrorCode EqmPrepareSetFromOptions(PetscOptionItems *PetscOptionsObject, Eq
   if (options->piece < 1)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-piece %" PetscInt_FMT ": give 1 or more", options->piece);
   if (!(options->hole_weight > 0.) || PetscIsInfReal(options->hole_weight))
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-hole_weight %g: give a positive number", (double)options->hole_weight);
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-hole_weight %.6g: give a positive number", (double)options->hole_weight);
   if (!(options->handle_length >= 0.))
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-handle_length %g: give 0 or more", (double)options->handle_length);
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-handle_length %.6g: give 0 or more", (double)options->handle_length);
   if (!(options->weld_tolerance >= 0.) || options->weld_tolerance > .1) {
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-weld_tolerance %g: give a share of the mesh's diameter, 0 to 0.1",
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-weld_tolerance %.6g: give a share of the mesh's diameter, 0 to 0.1",
             (double)options->weld_tolerance);
   }
   PetscFunctionReturn(0);

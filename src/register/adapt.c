@@ -74,7 +74,7 @@ static PetscErrorCode MinimiseOnce(EqmRegistration r, EqmSide *side, const Petsc
   PetscFunctionBegin;
   PetscCall(CreateSolver(r, side, vertices, goal, weight, steps, &held, &solver));
   if (!r->set.quiet)
-    PetscCall(PetscPrintf(r->comm, "h for %s: landmarks drawn with weight %g%s\n", side->name, (double)weight,
+    PetscCall(PetscPrintf(r->comm, "h for %s: landmarks drawn with weight %.6g%s\n", side->name, (double)weight,
                           held ? ", boundary held" : ""));
   PetscCall(EqmRegistrationMinimise(r, solver));
   PetscCall(EqmSolverLandmarksReached(solver, reached));

@@ -128,7 +128,7 @@ static PetscErrorCode Judge(EqmRegistration r)
   if (r->landmarks.num && f->landmark_max > r->set.tolerance) {
     r->status = EQM_STATUS_NOT_CONVERGED;
     PetscCall(PetscSNPrintf(r->message, sizeof(r->message),
-                            "the landmarks are off by up to %.2g, more than -landmark_tol %g; try a larger "
+                            "the landmarks are off by up to %.2g, more than -landmark_tol %.6g; try a larger "
                             "-landmark_weight, more -landmark_stages or another -landmark_reach",
                             (double)f->landmark_max, (double)r->set.tolerance));
   }

@@ -163,7 +163,7 @@ PetscErrorCode EqmCheckpointStopRequested(EqmSolver solver, PetscBool *stop)
                             EqmStopReasonName(reason), solver->iterate->number));
   } else if (set->wall_time > 0. && seconds + ReservedSeconds(solver) >= set->wall_time) {
     PetscCall(
-        PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %g s", (double)set->wall_time));
+        PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %.6g s", (double)set->wall_time));
   } else {
     *stop = PETSC_FALSE;
     PetscFunctionReturn(0);

@@ -51,13 +51,13 @@ static PetscErrorCode MeetsTolerance(EqmSolver solver, PetscBool *meets)
   PetscCall(EqmSolverLandmarksReached(solver, &reached));
   *meets = PETSC_TRUE;
   if (reached && set->energy_target > 0. && totals->energy <= set->energy_target) {
-    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %g",
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the energy has reached its target %.6g",
                             (double)set->energy_target));
   } else if (reached && set->ratio_tol > 0. && totals->energy <= PetscSqr(set->ratio_tol) * totals->total) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
-                            "the ratios are within %g of one, root mean square", (double)set->ratio_tol));
+                            "the ratios are within %.6g of one, root mean square", (double)set->ratio_tol));
   } else if (iterate->gradient_norm >= 0. && iterate->gradient_norm <= set->gradient_tol) {
-    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the gradient's norm is below %g",
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "the gradient's norm is below %.6g",
                             (double)set->gradient_tol));
   } else {
     *meets = PETSC_FALSE;
@@ -113,7 +113,7 @@ PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop)
   *stop = Stagnates(solver);
   if (*stop) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
-                            "the objective fell by less than %g %% per iteration over the last %" PetscInt_FMT
+                            "the objective fell by less than %.6g %% per iteration over the last %" PetscInt_FMT
                             " iterations",
                             100. * (double)solver->settings.energy_rtol, solver->settings.stagnation));
     RejectPoorMap(solver);
@@ -122,7 +122,7 @@ PetscErrorCode EqmJudgeIteration(EqmSolver solver, PetscBool *stop)
   *stop = StandsStill(solver);
   if (*stop) {
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message),
-                            "the objective fell by no more than %g in the last iteration",
+                            "the objective fell by no more than %.6g in the last iteration",
                             (double)solver->settings.energy_atol));
     RejectPoorMap(solver);
     PetscFunctionReturn(0);

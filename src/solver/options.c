@@ -25,13 +25,13 @@ static PetscErrorCode Check(MPI_Comm comm, const EqmSolverSettings *set)
 {
   PetscFunctionBegin;
   if (set->max_it < -1) EqmFail(comm, EQM_ERR_USAGE, "-max_it %" PetscInt_FMT ": give 0 or more", set->max_it);
-  if (set->energy_atol < 0.) EqmFail(comm, EQM_ERR_USAGE, "-energy_atol %g: give 0 or more", (double)set->energy_atol);
+  if (set->energy_atol < 0.) EqmFail(comm, EQM_ERR_USAGE, "-energy_atol %.6g: give 0 or more", (double)set->energy_atol);
   if (set->wall_time < 0.)
-    EqmFail(comm, EQM_ERR_USAGE, "-wall_time %g: give a number of seconds, 0 for no limit", (double)set->wall_time);
+    EqmFail(comm, EQM_ERR_USAGE, "-wall_time %.6g: give a number of seconds, 0 for no limit", (double)set->wall_time);
   if (set->checkpoint_every < -1)
     EqmFail(comm, EQM_ERR_USAGE, "-checkpoint_every %" PetscInt_FMT ": give 1 or more, 0 or -1", set->checkpoint_every);
   if (set->balance < 0. && set->balance != -1.)
-    EqmFail(comm, EQM_ERR_USAGE, "-balance %g: give 0 or more; .001 to .1 are useful", (double)set->balance);
+    EqmFail(comm, EQM_ERR_USAGE, "-balance %.6g: give 0 or more; .001 to .1 are useful", (double)set->balance);
   PetscFunctionReturn(0);
 }
 

@@ -158,7 +158,7 @@ PetscErrorCode EqmMapSetImageScale(EqmMap map, PetscReal scale)
 {
   PetscFunctionBegin;
   if (!(scale > 0.) || PetscIsInfOrNanReal(scale))
-    EqmFail(map->soup->comm, EQM_ERR_USAGE, "-radius %g: give a positive number", (double)scale);
+    EqmFail(map->soup->comm, EQM_ERR_USAGE, "-radius %.6g: give a positive number", (double)scale);
   map->image_scale = scale;
   PetscFunctionReturn(0);
 }
