@@ -3,26 +3,6 @@
 #include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
 
-/* In deep tubes the areas of Tutte's map vanish in rounding, and it folds though it cannot: another
-   start takes its place, which goes from coarse to fine. */
-static PetscErrorCode TakeCascade(EqmSolver solver)
-{
-  const EqmStartType *cascade;
-  PetscBool guarded;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrcmp(solver->start->name, "guarded", &guarded));
-  if (!guarded || solver->formulation->starts != EQM_STARTS_PLANE) PetscFunctionReturn(0);
-  PetscCall(EqmIterateUpdate(solver->problem, solver->iterate));
-  if (solver->iterate->totals.folds == 0) PetscFunctionReturn(0);
-  PetscCall(EqmProblemNotify(solver->problem,
-                             "the start guarded has %" PetscInt64_FMT " folds, areas below rounding: cascade instead\n",
-                             solver->iterate->totals.folds));
-  PetscCall(EqmStartFind(solver->comm, solver->formulation->starts, solver->target, "cascade", &cascade));
-  PetscCall(EqmStartRun(cascade, solver->problem, solver->iterate, &solver->settings.start));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode EqmSolverMakeFirstMap(EqmSolver solver)
 {
   const EqmDomain domain = solver->problem->domain;
@@ -38,6 +18,5 @@ PetscErrorCode EqmSolverMakeFirstMap(EqmSolver solver)
     PetscFunctionReturn(0);
   }
   PetscCall(EqmStartRun(solver->start, solver->problem, solver->iterate, &solver->settings.start));
-  PetscCall(TakeCascade(solver));
   PetscFunctionReturn(0);
 }

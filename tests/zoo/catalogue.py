@@ -2,7 +2,7 @@
 import math
 
 from shapes import (bricks, capsule, coned, ellipsoid, fan, grid, jittered, moved, nested, octahedron, spiked, together, torus, tube,
-                    turned)
+                    turned, wheel)
 
 PLAIN = grid(9, 7)
 BALL = ellipsoid(1.0)
@@ -38,6 +38,9 @@ DISKS = {
     "two_triangles": lambda: grid(2, 2),
     "fan4": lambda: fan(4, apex=0.5),
     "fan1000": lambda: fan(1000),
+    "wheel16": lambda: wheel(16, 2),
+    "wheel8_twisted": lambda: wheel(8, 3, 0.3),
+    "wheel12_twisted": lambda: wheel(12, 3, 0.3),
     "spike": lambda: fan(40, apex=1000.0),
     "star": lambda: fan(40, radius=lambda a: 1.0 + 0.8 * math.cos(20 * a)),
     "grid": lambda: PLAIN,

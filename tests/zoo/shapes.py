@@ -32,6 +32,19 @@ def fan(count, apex=0.0, radius=lambda angle: 1.0):
     return points, [(0, 1 + k, 1 + (k + 1) % count) for k in range(count)]
 
 
+def wheel(count, rings, twist=0.0):
+    """Rings of vertices round one, each turned by `twist` spokes: a mesh with all symmetries of a wheel."""
+    angle = lambda r, k: 2 * PI * (k + twist * r) / count
+    points = [(0.0, 0.0, 0.0)]
+    points += [(r * numpy.cos(angle(r, k)), r * numpy.sin(angle(r, k)), 0.0) for r in range(1, rings + 1) for k in range(count)]
+    at = lambda r, k: 1 + (r - 1) * count + k % count
+    cells = [(0, at(1, k), at(1, k + 1)) for k in range(count)]
+    for r in range(1, rings):
+        for k in range(count):
+            cells += [(at(r, k), at(r + 1, k), at(r + 1, k + 1)), (at(r, k), at(r + 1, k + 1), at(r, k + 1))]
+    return points, cells
+
+
 def nested(depth):
     """A triangle, again and again one of its three parts cut in three: angles shrink, the boundary keeps three vertices."""
     points, cells = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.3, 0.9, 0.0)], [(0, 1, 2)]
