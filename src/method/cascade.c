@@ -1,17 +1,19 @@
 /* The cascade alone (docs/methods.md, Cascade): from the start of that name, relaxation of the mesh itself. One
    iteration is some Gauss-Seidel sweeps over the vertices, a Gauss-Newton step of areas with a little of the angles,
-   solved to a tenth by multigrid on the hierarchy, and two sweeps more. No matrix is factored but a small one. */
+   ever less, solved to a tenth by multigrid on the hierarchy, and two sweeps more. No matrix is factored but a small
+   one. */
 #include "method/method.h"
 #include "domain/domain_private.h"
 #include "problem/levels.h"
 
-/* Weight of the angle energy; and when another iteration is not worth its time. */
-static const PetscReal epsilon = .01, least_gain = .05;
+/* Weights of the angle energy, at first and at last; and when another iteration is not worth its time. */
+static const PetscReal first_epsilon = .01, last_epsilon = 1e-3, least_gain = .05;
 enum { SWEEPS = 2 };
 
 typedef struct {
   EqmLevels levels;
   EqmCascadeOptions options;
+  PetscReal epsilon; /* falls to `last_epsilon` where it gains little; then to zero: the end */
 } Cascade;
 
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
@@ -27,7 +29,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
             "; take -start cascade, or another start or a better mesh",
             iterate->totals.folds);
   PetscCall(EqmCascadeOptionsDefault(&cascade->options));
-  cascade->options.epsilon_finest = epsilon;
+  cascade->epsilon = first_epsilon;
   cascade->options.sweeps = SWEEPS;
   PetscCall(EqmLevelsCreate(method->problem, &cascade->levels));
   iterate->objective = iterate->totals.energy;
@@ -35,31 +37,57 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
+/* The map after one relaxation, if it is better and has no folds; `gained`: by enough. */
+static PetscErrorCode Relax(Cascade *cascade, EqmProblem problem, EqmIterate iterate, PetscBool *better,
+                            PetscBool *gained)
 {
-  Cascade *const cascade = method->data;
   EqmLevels *const levels = &cascade->levels;
   EqmCascadeResult result;
   EqmPlace trial;
   PetscInt64 folds;
 
   PetscFunctionBegin;
+  cascade->options.epsilon_finest = cascade->epsilon;
   PetscCall(EqmLevelsGather(levels, &iterate->place));
   PetscCall(EqmCascadeRelax(levels->hierarchy, levels->target, &cascade->options, levels->x, &result));
-  PetscCall(EqmPlaceCreate(method->problem->domain, &trial));
+  PetscCall(EqmPlaceCreate(problem->domain, &trial));
   PetscCall(EqmLevelsScatter(levels, &trial));
-  PetscCall(EqmPlaceMakeFrames(method->problem->domain, &trial));
-  PetscCall(EqmImageFolds(method->problem->domain, &trial, iterate->image, &folds));
-  *outcome = EQM_STEP_CONVERGED;
-  if (folds == 0 && result.objective < (1. - least_gain) * result.before) *outcome = EQM_STEP_TAKEN;
-  if (*outcome == EQM_STEP_TAKEN) PetscCall(EqmPlaceCopy(method->problem->domain, &trial, &iterate->place));
+  PetscCall(EqmPlaceMakeFrames(problem->domain, &trial));
+  PetscCall(EqmImageFolds(problem->domain, &trial, iterate->image, &folds));
+  PetscCall(EqmDomainBoundaryInOrder(problem->domain, &trial, better));
+  *better = (PetscBool)(*better && folds == 0 && result.objective < result.before);
+  *gained = (PetscBool)(*better && result.objective < (1. - least_gain) * result.before);
+  if (*better) PetscCall(EqmPlaceCopy(problem->domain, &trial, &iterate->place));
   PetscCall(EqmPlaceDestroy(&trial));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
+{
+  Cascade *const cascade = method->data;
+  PetscBool better = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  while (!better && cascade->epsilon > 0.) {
+    PetscBool gained;
+    PetscCall(Relax(cascade, method->problem, iterate, &better, &gained));
+    if (!gained) cascade->epsilon = cascade->epsilon > last_epsilon ? last_epsilon : 0.;
+  }
   PetscCall(EqmIterateUpdate(method->problem, iterate));
   iterate->objective = iterate->totals.energy;
   iterate->step_length = 1.;
-  if (*outcome == EQM_STEP_CONVERGED)
+  *outcome = better ? EQM_STEP_TAKEN : EQM_STEP_CONVERGED;
+  if (!better)
     PetscCall(
         PetscStrncpy(method->message, "another relaxation would gain less than a twentieth", sizeof(method->message)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
+{
+  PetscFunctionBegin;
+  (void)iterate;
+  PetscCall(EqmStateReal(state, "angle_weight", &((Cascade *)method->data)->epsilon));
   PetscFunctionReturn(0);
 }
 
@@ -77,7 +105,7 @@ PetscErrorCode EqmMethodCreateCascade(EqmMethod method)
   PetscFunctionBegin;
   PetscCall(PetscNew(&cascade));
   method->data = cascade;
-  method->purpose = "relaxation on a hierarchy of coarser meshes: a smooth map, areas good to a few percent, soon";
-  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .reset = Reset};
+  method->purpose = "relaxation on a hierarchy of coarser meshes: a smooth map, areas good to a percent or two, soon";
+  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);
 }

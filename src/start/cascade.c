@@ -27,17 +27,22 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   const char *const obstacle = EqmLevelsObstacle(problem);
   EqmStartOptions other = *options;
   EqmCascadeResult result = {.folds = 0};
+  PetscBool in_order;
 
   PetscFunctionBegin;
   if (obstacle) {
     PetscCall(EqmProblemNotify(problem, "the start cascade %s; guarded instead\n", obstacle));
   } else {
     PetscCall(Cascade(problem, iterate, &result));
-    if (result.folds == 0) PetscFunctionReturn(0);
-    PetscCall(EqmProblemNotify(problem,
-                               "the start cascade ends with %" PetscInt_FMT
-                               " triangles folded or too small to tell; guarded instead\n",
-                               result.folds));
+    PetscCall(EqmDomainBoundaryInOrder(problem->domain, &iterate->place, &in_order));
+    if (result.folds == 0 && in_order) PetscFunctionReturn(0);
+    if (result.folds > 0)
+      PetscCall(EqmProblemNotify(problem,
+                                 "the start cascade ends with %" PetscInt_FMT
+                                 " triangles folded or too small to tell; guarded instead\n",
+                                 result.folds));
+    else
+      PetscCall(EqmProblemNotify(problem, "the start cascade ends with a boundary out of order; guarded instead\n"));
   }
   other.steps = guarded->steps;
   PetscCall(guarded->run(problem, iterate, &other));

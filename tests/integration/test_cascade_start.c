@@ -69,9 +69,9 @@ int main(int argc, char **argv)
   PetscCall(TestTarget("hills", 2000, "disk", "", 3.));
   PetscCall(TestTarget("hills", 2000, "square", "-corners 0,44,1899,1950", 3.)); /* the quarters of the boundary */
   PetscCall(TestTarget("head", 2000, "sphere", "", -.5));
-  PetscCall(TestMethod("hills", "disk", 5e-3));
-  PetscCall(TestMethod("hills", "square", 5e-3));
-  PetscCall(TestMethod("head", "sphere", 5e-3));
+  PetscCall(TestMethod("hills", "disk", 1e-3));
+  PetscCall(TestMethod("hills", "square", 1e-3));
+  PetscCall(TestMethod("head", "sphere", 1e-3));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
