@@ -29,7 +29,7 @@ from sweep_table import TableError, find_preset, read_table
 
 HERE = pathlib.Path(__file__).resolve().parent
 SYSTEMS = {"slurm": "sbatch", "pbs": "qsub", "lsf": "bsub"}
-LOOKED_AT = ("disk", "square", "sphere", "ball", "conformal", "register")
+LOOKED_AT = ("disk", "square", "sphere", "ball", "cube", "conformal", "register")
 SHORTEST = 300  # seconds: two to three minutes are kept for the checkpoint
 FEWEST_VERTICES = 1000  # on a rank; below, ranks wait for each other
 

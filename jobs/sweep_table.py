@@ -3,7 +3,7 @@
 A table is a CSV (or .tsv) file with a header and a run per row; lines that begin with # are comments. Columns:
 
     name      a folder of that name holds what the run leaves; every row its own
-    command   disk, square, sphere, ball, conformal, register
+    command   disk, square, sphere, ball, cube, conformal, register
     mesh      a file, seen from the folder of meshes; its suffix may be left out. SHAPE:N is generated (hills:20000)
     mesh_b    register: the other mesh, or the word target
     preset    an options file, seen from config/, without its suffix (000/table1-ncg-foot), or none

@@ -37,6 +37,9 @@ PETSC_EXTERN const EqmVertexMotion EqmMotionHeldOnCircle; /* at its place on the
 PETSC_EXTERN const EqmVertexMotion EqmMotionSideX;        /* along a horizontal side: the first coordinate */
 PETSC_EXTERN const EqmVertexMotion EqmMotionSideY;        /* along a vertical side: the second coordinate */
 PETSC_EXTERN const EqmVertexMotion EqmMotionCorner;       /* at its corner of the square */
+PETSC_EXTERN const EqmVertexMotion EqmMotionFace[3];      /* in a face of the cube normal to that axis */
+PETSC_EXTERN const EqmVertexMotion EqmMotionEdge[3];      /* along an edge of the cube in direction of that axis */
+PETSC_EXTERN const EqmVertexMotion EqmMotionCubeCorner;   /* at its corner of the cube */
 PETSC_EXTERN const EqmVertexMotion EqmMotionSphere; /* on the unit sphere: two degrees of freedom in its own frame */
 PETSC_EXTERN const EqmVertexMotion EqmMotionAngles; /* on the unit sphere: polar angle and azimuth (003 (4), (5)) */
 
@@ -55,6 +58,7 @@ typedef struct {
   const PetscInt *corners;      /* square: four input vertex numbers; NULL: at quarters of the boundary's arc length */
   const char *boundary_angles;  /* disk: a CSV file of boundary vertices and the angles that hold them; NULL: none */
   const PetscReal *held_angles; /* disk: these angles per local vertex, as of EqmDomainCreateHeldDisk; NULL: none */
+  const PetscReal *cube_places; /* cube: places of the boundary vertices, as of EqmDomainCreateCube */
 } EqmDomainOptions;
 /* The type of a domain: a name, and a function that creates it for a mesh. */
 typedef struct {
@@ -84,6 +88,11 @@ PETSC_EXTERN PetscErrorCode EqmDomainCreateSphere(EqmMesh mesh, EqmDomain *domai
    "spherical-ball", their degrees of freedom are spherical coordinates (003 (4), (5)): no isometry, but the coordinates
    that 003 Algorithm 1 is written in. The mesh must be a solid. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainCreateBall(EqmMesh mesh, PetscBool angles, EqmDomain *domain);
+/* "cube", the unit cube [0, 1]^3: boundary vertices slide in their face or along their edge, corners are fixed, the
+   others are free. `places`: three coordinates per local vertex; those of boundary vertices that are exactly 0 or 1
+   stay so, and the others are the first places. The mesh must be a solid. Errors: EQM_ERR_MESH (tetrahedra with four
+   vertices in one face). Collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainCreateCube(EqmMesh mesh, const PetscReal *places, EqmDomain *domain);
 PETSC_EXTERN PetscErrorCode EqmDomainDestroy(EqmDomain *domain);
 
 /* A place for every local vertex of the domain's mesh, at zero; free it again; copy one into another of the same

@@ -41,8 +41,8 @@ PETSC_EXTERN PetscErrorCode EqmImageDerivativesOf(EqmDomain domain, EqmMeasureKi
    cell. Collective. */
 PETSC_EXTERN PetscErrorCode EqmImageFolds(EqmDomain domain, const EqmPlace *place, PetscReal *scratch,
                                           PetscInt64 *folds);
-/* How many triangles of the boundary of a map to the ball do not look outward: det not positive. The volumes inside
-   need not tell. Collective. */
+/* How many triangles of the boundary of a map to the ball or cube do not look outward, seen from its centre. The
+   volumes inside need not tell. Collective. */
 PETSC_EXTERN PetscErrorCode EqmImageBoundaryFolds(EqmDomain domain, const EqmPlace *place, PetscInt64 *folds);
 
 /* The normalised authalic energy E = A sum w (r - 1)^2 (000 (4), in a form free of cancellation) and, if wanted, its

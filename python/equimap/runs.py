@@ -63,7 +63,7 @@ def names_of(output, folder):
 def run(command, *meshes, output=None, ranks=1, threads=None, progress=None, accept=(0, 4), program=None, **options):
     """Map a mesh, or register two: what `equimap COMMAND MESH ... -o OUTPUT -OPTIONS` does, with its Result.
 
-    command    disk, square, sphere, ball, conformal, register
+    command    disk, square, sphere, ball, cube, conformal, register
     meshes     files, pairs of arrays (vertices, cells), Results (register takes their maps), meshes of meshio
     output     one or several files to keep; the suffix says the format. Without it nothing is left behind
     ranks, threads   of the run; ranks are started by mpirun, or by what EQUIMAP_MPIRUN names

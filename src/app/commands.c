@@ -12,6 +12,7 @@ static const EqmCommandRow commands[] = {
     {"sphere", EqmCommandMap, "MESH -o OUT", NULL},
     {"conformal", EqmCommandMap, "MESH -o OUT", NULL},
     {"ball", EqmCommandMap, "MESH -o OUT", NULL},
+    {"cube", EqmCommandMap, "MESH -o OUT", NULL},
     {"register", EqmCommandRegister, "A B -o OUT", "measure-preserving correspondence between two surfaces or solids"},
     {"resample", EqmCommandResample, "RESULT -grid N -o OUT",
      "a mesh made anew through its map: regular, or as another one"},

@@ -94,7 +94,7 @@ static PetscErrorCode CheckTexture(const char *command, const char *file)
   PetscFunctionBegin;
   if (!format || !format->writes_texture)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-uv %s: texture coordinates are written to .obj or .ply", file);
-  if (!strcmp(command, "ball"))
+  if (!strcmp(command, "ball") || !strcmp(command, "cube"))
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-uv %s: solids have no texture coordinates", file);
   PetscFunctionReturn(0);
 }

@@ -55,15 +55,15 @@ static PetscErrorCode PrintImage(const Measured *m)
                         EqmDomainShapeName(p->shape)));
   if (p->size != 1. && known) {
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, " of %s %.6g at (%.6g, %.6g, %.6g)",
-                          p->shape == EQM_FILLS_SQUARE ? "side" : "radius", (double)p->size, (double)p->center[0],
-                          (double)p->center[1], (double)p->center[2]));
+                          p->shape == EQM_FILLS_SQUARE || p->shape == EQM_FILLS_CUBE ? "side" : "radius",
+                          (double)p->size, (double)p->center[0], (double)p->center[1], (double)p->center[2]));
   }
   if (p->size != 1.) {
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, ": measured at %s 1",
-                          p->shape == EQM_FILLS_SQUARE  ? "side"
-                          : known                       ? "radius"
-                          : p->shape == EQM_FILLS_SOLID ? "volume"
-                                                        : "area"));
+                          p->shape == EQM_FILLS_SQUARE || p->shape == EQM_FILLS_CUBE ? "side"
+                          : known                                                    ? "radius"
+                          : p->shape == EQM_FILLS_SOLID                              ? "volume"
+                                                                                     : "area"));
   }
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n"));
   PetscFunctionReturn(0);

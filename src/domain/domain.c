@@ -67,6 +67,7 @@ PetscErrorCode EqmDomainDestroy(EqmDomain *domain)
   if (!*domain) PetscFunctionReturn(0);
   PetscCall(PetscFree((*domain)->kind));
   PetscCall(PetscFree((*domain)->arc_length));
+  PetscCall(PetscFree((*domain)->boundary_place));
   PetscCall(PetscFree2((*domain)->dof_start, (*domain)->dof_count));
   PetscCall(PetscFree(*domain));
   PetscFunctionReturn(0);

@@ -21,8 +21,10 @@ struct _p_EqmDomain {
   PetscBool has_frames;         /* some kind stores three reals per vertex */
   PetscReal target_measure;     /* of the ideal image: pi, 1, 4 pi, 4 pi / 3 */
   PetscReal boundary_length;    /* of the target: 2 pi, 4 */
+  PetscReal center[3];          /* of maps of solids: a point inside, from which every face is seen */
   PetscReal corner_arc[4];      /* square: arc lengths of the corners */
   PetscErrorCode (*place_boundary)(EqmDomain, EqmPlace *);
+  PetscReal *boundary_place; /* cube: first places, three per local vertex; NULL elsewhere */
   PetscReal *arc_length; /* per local vertex: arc length along the boundary loop in [0, 1), -1 inside (disk, square) */
 };
 
@@ -40,6 +42,9 @@ PETSC_INTERN PetscErrorCode EqmDomainNumber(EqmDomain domain);
 /* The retraction of kinds without degrees of freedom. Not collective. */
 PETSC_INTERN void EqmRetractNowhere(PetscInt dim, const PetscReal *x, const PetscReal *stored, PetscReal t,
                                     const PetscScalar *dofs, PetscReal *y, PetscReal *new_stored);
+
+/* The sides of the unit cube that a place is on, as bits: 2k for coordinate k zero, 2k + 1 for one. Not collective. */
+PETSC_INTERN PetscInt EqmCubeSides(const PetscReal place[3]);
 
 /* The domain held-disk, with angles from the file in the options. Collective. */
 PETSC_INTERN PetscErrorCode EqmDomainReadHeldDisk(EqmMesh mesh, const EqmDomainOptions *options, EqmDomain *domain);

@@ -45,10 +45,19 @@ static PetscErrorCode SphericalBall(EqmMesh mesh, const EqmDomainOptions *option
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Cube(EqmMesh mesh, const EqmDomainOptions *options, EqmDomain *domain)
+{
+  PetscFunctionBegin;
+  PetscCheck(options && options->cube_places, mesh->comm, PETSC_ERR_ARG_NULL, "the cube wants its boundary's places");
+  PetscCall(EqmDomainCreateCube(mesh, options->cube_places, domain));
+  PetscFunctionReturn(0);
+}
+
 enum { MAX_DOMAINS = 32 };
 static const EqmDomainType disk = {"disk", Disk}, square = {"square", Square}, sphere = {"sphere", Sphere},
-                           ball = {"ball", Ball}, spherical_ball = {"spherical-ball", SphericalBall};
-static const EqmDomainType *types[MAX_DOMAINS] = {&disk, &square, &sphere, &ball, &spherical_ball};
+                           ball = {"ball", Ball}, spherical_ball = {"spherical-ball", SphericalBall},
+                           cube = {"cube", Cube};
+static const EqmDomainType *types[MAX_DOMAINS] = {&disk, &square, &sphere, &ball, &spherical_ball, &cube};
 
 PetscErrorCode EqmDomainRegister(const EqmDomainType *type)
 {

@@ -77,12 +77,12 @@ PetscErrorCode EqmImageBoundaryFolds(EqmDomain domain, const EqmPlace *place, Pe
   PetscFunctionBegin;
   for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
     const PetscInt *const v = mesh->boundary_facets + 3 * f;
-    const PetscReal *p[EQM_MAX_CORNERS];
     PetscInt lowest = v[0]; /* its owner counts the triangle */
     for (PetscInt a = 1; a < 3; a++) lowest = mesh->global[v[a]] < mesh->global[lowest] ? v[a] : lowest;
     if (lowest >= mesh->num_owned) continue;
-    Corners(3, 3, v, place->x, p);
-    count += !(EqmHalfDet(p[0], p[1], p[2]) > 0.);
+    PetscReal from_center[9];
+    for (PetscInt k = 0; k < 9; k++) from_center[k] = place->x[3 * v[k / 3] + k % 3] - domain->center[k % 3];
+    count += !(EqmHalfDet(from_center, from_center + 3, from_center + 6) > 0.);
   }
   PetscCall(MPIU_Allreduce(&count, folds, 1, MPIU_INT64, MPI_SUM, mesh->comm));
   PetscFunctionReturn(0);

@@ -91,33 +91,35 @@ static PetscErrorCode FitSphere(EqmMesh mesh, PetscInt dim, PetscBool boundary, 
   PetscFunctionReturn(0);
 }
 
-/* Do the boundary vertices lie on the edges of the box around the image, and is it a square? Collective. */
-static PetscErrorCode FitSquare(EqmMesh mesh, const PetscReal *x, PetscReal corner[3], PetscReal *side, PetscBool *fits)
+/* Do the boundary vertices lie on the sides of the box around the image, and is it a square or cube? Collective. */
+static PetscErrorCode FitSquare(EqmMesh mesh, PetscInt dim, const PetscReal *x, PetscReal corner[3], PetscReal *side,
+                                PetscBool *fits)
 {
-  PetscReal box[4] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL}, worst = 0., width[2];
+  PetscReal box[6], worst = 0., uneven = 0., width[3];
 
   PetscFunctionBegin;
   *fits = PETSC_FALSE;
-  for (PetscInt v = 0; v < mesh->num_owned; v++) {
-    for (PetscInt k = 0; k < 2; k++) {
-      box[k] = PetscMin(box[k], x[2 * v + k]);
-      box[2 + k] = PetscMin(box[2 + k], -x[2 * v + k]);
-    }
+  for (PetscInt k = 0; k < 6; k++) box[k] = PETSC_MAX_REAL;
+  for (PetscInt k = 0; k < dim * mesh->num_owned; k++) {
+    box[k % dim] = PetscMin(box[k % dim], x[k]);
+    box[3 + k % dim] = PetscMin(box[3 + k % dim], -x[k]);
   }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, box, 4, MPIU_REAL, MPIU_MIN, mesh->comm));
-  for (PetscInt k = 0; k < 2; k++) width[k] = -box[2 + k] - box[k];
-  *side = .5 * (width[0] + width[1]);
-  if (!(PetscAbsReal(width[0] - width[1]) <= TOLERANCE * *side)) PetscFunctionReturn(0);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPIU_MIN, mesh->comm));
+  for (PetscInt k = 0; k < dim; k++) width[k] = -box[3 + k] - box[k];
+  *side = 0.;
+  for (PetscInt k = 0; k < dim; k++) *side += width[k] / dim;
+  for (PetscInt k = 0; k < dim; k++) uneven = PetscMax(uneven, PetscAbsReal(width[k] - *side));
+  if (!(uneven <= .5 * TOLERANCE * *side)) PetscFunctionReturn(0);
   for (PetscInt v = 0; v < mesh->num_owned; v++) {
     PetscReal nearest = PETSC_MAX_REAL;
 
     if (!mesh->on_boundary[v]) continue;
-    for (PetscInt k = 0; k < 2; k++)
-      nearest = PetscMin(nearest, PetscMin(x[2 * v + k] - box[k], -box[2 + k] - x[2 * v + k]));
+    for (PetscInt k = 0; k < dim; k++)
+      nearest = PetscMin(nearest, PetscMin(x[dim * v + k] - box[k], -box[3 + k] - x[dim * v + k]));
     worst = PetscMax(worst, nearest);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, mesh->comm));
-  for (PetscInt k = 0; k < 2; k++) corner[k] = box[k];
+  for (PetscInt k = 0; k < dim; k++) corner[k] = box[k];
   *fits = (PetscBool)(worst <= TOLERANCE * *side && mesh->num_boundary_vertices > 0);
   PetscFunctionReturn(0);
 }
@@ -151,7 +153,8 @@ static PetscBool IsUnit(const EqmImagePlacement *placement)
   return (PetscBool)(off <= UNIT_TOLERANCE);
 }
 
-/* EqmImageRecognise - the domain that an image fills, its centre (of a square: its lower left corner) and its size.
+/* EqmImageRecognise - the domain that an image fills, its centre (of squares and cubes: the corner of least
+   coordinates) and its size.
 
    Collective. x - the images of the mesh's local vertices, dim reals each. Of an image that fills no known domain the
    size is the square root of its area, or the cube root of its volume. An image of the unit domain, up to 1e-6, has
@@ -166,9 +169,9 @@ PetscErrorCode EqmImageRecognise(EqmMesh mesh, PetscInt dim, const PetscReal *x,
   PetscCall(PetscMemzero(placement, sizeof(*placement)));
   placement->shape = solid ? EQM_FILLS_BALL : planar ? EQM_FILLS_DISK : EQM_FILLS_SPHERE;
   PetscCall(FitSphere(mesh, dim, (PetscBool)(solid || planar), x, placement->center, &placement->size, &fits));
-  if (!fits && planar) {
-    placement->shape = EQM_FILLS_SQUARE;
-    PetscCall(FitSquare(mesh, x, placement->center, &placement->size, &fits));
+  if (!fits && (planar || solid)) {
+    placement->shape = planar ? EQM_FILLS_SQUARE : EQM_FILLS_CUBE;
+    PetscCall(FitSquare(mesh, dim, x, placement->center, &placement->size, &fits));
   }
   if (!fits) {
     PetscCall(MeasureImage(mesh, dim, x, &measure));
@@ -196,7 +199,8 @@ void EqmImageToUnit(EqmMesh mesh, PetscInt dim, const EqmImagePlacement *placeme
 const char *EqmDomainShapeName(EqmDomainShape shape)
 {
   static const char *const name[] = {
-      "disk", "square", "planar, neither disk nor square", "sphere", "a surface in space", "ball", "a solid, no ball"};
+      "disk", "square", "planar, neither disk nor square", "sphere", "a surface in space",
+      "ball", "cube",   "a solid, neither ball nor cube"};
 
   return name[shape];
 }

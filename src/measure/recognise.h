@@ -12,6 +12,7 @@ typedef enum {
   EQM_FILLS_SPHERE, /* all vertices on a sphere */
   EQM_FILLS_SPACE,  /* another surface in space */
   EQM_FILLS_BALL,   /* a solid, its boundary on a sphere */
+  EQM_FILLS_CUBE,   /* a solid, its boundary on an upright cube */
   EQM_FILLS_SOLID   /* another solid */
 } EqmDomainShape;
 

@@ -9,6 +9,7 @@ static const EqmTarget targets[] = {
      "area-preserving map of a closed genus-0 surface to the unit sphere",
      {[EQM_TOPOLOGY_SPHERE] = "sphere"}},
     {"ball", "volume-preserving map of a solid ball of tetrahedra to the unit ball", {[EQM_TOPOLOGY_BALL] = "ball"}},
+    {"cube", "volume-preserving map of a solid ball of tetrahedra to the unit cube", {[EQM_TOPOLOGY_BALL] = "cube"}},
     {"conformal",
      "angle-preserving map: closed surface to the unit sphere, disk-type to the unit disk",
      {[EQM_TOPOLOGY_DISK] = "disk", [EQM_TOPOLOGY_SPHERE] = "sphere"}},

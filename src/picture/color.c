@@ -104,6 +104,18 @@ static int Modulo2(double x)
   return (int)(fmod(floor(x), 2.0) + 2.0) % 2;
 }
 
+/* Small cubes in the unit cube, those along one edge marked. Points of a face are moved inwards by rounding's measure,
+   so that all lie on one side of its plane. */
+static PetscBool InCubes(const double image[3], double *number)
+{
+  const double count = 6.0, inward = 1e-6;
+  double place[3];
+
+  for (int k = 0; k < 3; k++) place[k] = floor(count * fmin(fmax(image[k], inward), 1.0 - inward));
+  *number = place[0] + place[1] + place[2];
+  return (PetscBool)(place[1] == 0.0 && place[2] == 0.0);
+}
+
 /* Where a point lies on the board, in patches, and whether its patch is one of those that show how the board lies. */
 static PetscBool OnBoard(EqmPattern pattern, const double image[3], double *along, double *across)
 {
@@ -123,6 +135,9 @@ static PetscBool OnBoard(EqmPattern pattern, const double image[3], double *alon
   case EQM_PATTERN_SPHERE:
     *across = 12 * (1.0 + height) / 2;
     break;
+  case EQM_PATTERN_CUBE:
+    *across = 0.0;
+    return InCubes(image, along);
   case EQM_PATTERN_SPHERE_SQUARES: /* Mercator's; a cap of one colour where they would become too small to see */
     *across = 24 * atanh(height) / (2 * PETSC_PI);
     if (fabs(*across) < 12.0) break;

@@ -11,6 +11,7 @@ static EqmPattern PatternOf(const EqmResult *result)
   const PetscBool conformal = (PetscBool)!strcmp(result->command, "conformal");
 
   if (result->target) return result->target_dim == 3 ? EQM_PATTERN_SPHERE : EQM_PATTERN_DISK;
+  if (!strcmp(result->command, "cube")) return EQM_PATTERN_CUBE;
   if (result->dim == 3) return conformal ? EQM_PATTERN_SPHERE_SQUARES : EQM_PATTERN_SPHERE;
   if (conformal) return EQM_PATTERN_DISK_SQUARES;
   return strcmp(result->command, "square") ? EQM_PATTERN_DISK : EQM_PATTERN_SQUARE;

@@ -133,6 +133,20 @@ static PetscErrorCode AddCut(const EqmResult *result, const char *title, const P
   PetscFunctionReturn(0);
 }
 
+static PetscBool IsCube(const EqmResult *result)
+{
+  return (PetscBool)!strcmp(result->command, "cube");
+}
+
+/* The image of a solid: the ball, or the cube as it fits into the picture. */
+static EqmCamera ImageCamera(const EqmResult *result, const Row *row, double azimuth)
+{
+  EqmCamera camera = SphereCamera(azimuth);
+
+  if (IsCube(result)) EqmCameraFit(&camera, &row->surface, result->images);
+  return camera;
+}
+
 /* The other map, as the image is seen. */
 static PetscErrorCode AddStart(const EqmPage *page, Row *row)
 {
@@ -149,7 +163,7 @@ static PetscErrorCode AddStart(const EqmPage *page, Row *row)
   else
     (void)snprintf(row->start_title, sizeof(row->start_title), "Start, energy %s", energy);
   if (start->cell_size == 4)
-    PetscCall(AddCut(start, row->start_title, start->images, SphereCamera(20.0), x, MOST_CUTS - 1, row));
+    PetscCall(AddCut(start, row->start_title, start->images, ImageCamera(start, row, 20.0), x, MOST_CUTS - 1, row));
   else if (start->dim == 2)
     AddFlat(start, row->start_title, row);
   else
@@ -157,19 +171,26 @@ static PetscErrorCode AddStart(const EqmPage *page, Row *row)
   PetscFunctionReturn(0);
 }
 
-/* The boundary, and three cuts: one of the solid, two of the ball. */
+/* The boundary, and cuts: one of the solid, two of the ball; of the cube the whole and one. */
 static PetscErrorCode AddSolid(const EqmPage *page, const EqmResult *result, EqmCamera camera, Row *row)
 {
   static const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0};
+  const PetscBool is_cube = IsCube(result);
+  const EqmCamera of_image = ImageCamera(result, row, 30.0);
 
   PetscFunctionBegin;
   PetscCall(AddView(result, "Solid, coloured by volume ratio", &row->surface, result->vertices, camera, EQM_PAINT_CELLS,
                     row));
   row->view[row->count - 1].marked = PETSC_TRUE;
-  PetscCall(AddView(result, "Graticule of the ball, pulled back", &row->surface, result->vertices, camera,
-                    EQM_PAINT_PATTERN, row));
+  PetscCall(AddView(result, is_cube ? "Small cubes, pulled back" : "Graticule of the ball, pulled back", &row->surface,
+                    result->vertices, camera, EQM_PAINT_PATTERN, row));
   PetscCall(AddCut(result, "Solid, cut open", result->vertices, camera, camera.toward, 0, row));
   PetscCall(AddStart(page, row));
+  if (is_cube) {
+    PetscCall(AddView(result, "Image", &row->surface, result->images, of_image, EQM_PAINT_CELLS, row));
+    PetscCall(AddCut(result, "Image, cut at x = 1/2", result->images, of_image, x, 1, row));
+    PetscFunctionReturn(0);
+  }
   PetscCall(AddCut(result, "Image, cut at x = 0", result->images, SphereCamera(20.0), x, 1, row));
   PetscCall(AddCut(result, "Image, cut at y = 0", result->images, SphereCamera(70.0), y, 2, row));
   PetscFunctionReturn(0);

@@ -4,7 +4,7 @@
        T mean [ lambda (1 + J^2) / (2 chi) + sigma |F|^2 / (3 chi^(2/3)) ],   chi = (J + sqrt(eps^2 + J^2)) / 2
 
    over the cells, J the ratio of a cell's volume to what it should be and F the derivative of the map from its shape;
-   and the first term over the cells between the origin and each boundary triangle, which keeps the boundary's own map
+   and the first term over the cells between the centre and each boundary triangle, which keeps the boundary's own map
    unfolded. T is the target's measure. Every cell counts alike: by volume, slivers would be given up. With eps -> 0
    what is folded costs ever more, what is not folded stays so. */
 #include "problem/barrier.h"
@@ -83,7 +83,7 @@ static PetscReal AddCells(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, 
   return sum / mesh->num_cells;
 }
 
-/* The cells between the origin and the boundary's triangles: their gradients at owned vertices go to `ambient`. */
+/* The cells between the centre and the boundary's triangles: their gradients at owned vertices go to `ambient`. */
 static PetscReal AddBoundary(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscReal *ambient)
 {
   PetscReal sum = 0.;
@@ -95,7 +95,7 @@ static PetscReal AddBoundary(EqmBarrier barrier, EqmMesh mesh, const PetscReal *
     for (PetscInt a = 0; a < 3; a++) {
       PetscReal normal[3];
       if (v[a] >= mesh->num_owned) continue;
-      EqmCross(x + 3 * v[(a + 1) % 3], x + 3 * v[(a + 2) % 3], normal);
+      EqmBarrierFacetNormal(barrier, mesh, x, f, a, normal);
       for (PetscInt k = 0; k < 3; k++)
         ambient[3 * v[a] + k] += term.first * normal[k] / (6. * barrier->share[f] * barrier->num_facets);
     }
@@ -137,6 +137,7 @@ PetscErrorCode EqmBarrierCreate(EqmProblem problem, const EqmPlace *place, EqmBa
   PetscCall(PetscNew(&barrier));
   barrier->term = (struct _p_EqmTerm){.name = "barrier", .weight = 1., .add = Add, .add_matrix = EqmBarrierAddMatrix};
   barrier->total = problem->domain->target_measure;
+  PetscCall(PetscArraycpy(barrier->center, problem->domain->center, 3));
   PetscCall(PetscMalloc3(mesh->num_boundary_facets, &barrier->share, mesh->num_boundary_facets, &barrier->counts, 4 * n,
                          &barrier->facet_of));
   PetscCall(PetscMalloc5(6 * n, &barrier->edge, 6 * n, &barrier->flow, n, &barrier->slope, 3 * mesh->num_owned,

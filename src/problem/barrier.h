@@ -11,6 +11,7 @@ struct _p_EqmBarrier {
   struct _p_EqmTerm term;         /* without a weight of its own */
   PetscReal weight, shape_weight; /* lambda and sigma */
   PetscReal epsilon;              /* how soft it is; never 0, what is next to nothing makes it a wall */
+  PetscReal center[3];            /* of the domain */
   PetscReal total;                /* the volume that ratios refer to, held */
   PetscInt num_facets;            /* of the whole boundary */
   PetscReal *share;               /* of the surface, per boundary facet */
@@ -34,8 +35,11 @@ PETSC_INTERN PetscErrorCode EqmBarrierDestroy(EqmBarrier *barrier);
 PETSC_INTERN EqmBarrierTerm EqmBarrierOfCell(EqmBarrier barrier, PetscReal ratio, PetscReal stretch);
 /* |F|^2 of a cell. Not collective. */
 PETSC_INTERN PetscReal EqmBarrierStretch(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt cell);
-/* Volume of the cell between the origin and a boundary facet over what it should be. Not collective. */
+/* Volume of the cell between the domain's centre and a boundary facet over what it should be. Not collective. */
 PETSC_INTERN PetscReal EqmBarrierFacetRatio(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt facet);
+/* Six times the derivative of that cell's volume by its corner number b. Not collective. */
+PETSC_INTERN void EqmBarrierFacetNormal(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt facet,
+                                        PetscInt b, PetscReal normal[3]);
 /* The smallest ratio of cells and boundary facets of an iterate, and how many of both are folded. Collective. */
 PETSC_INTERN PetscErrorCode EqmBarrierInspect(EqmBarrier barrier, EqmProblem problem, EqmIterate iterate,
                                               PetscReal *least, PetscInt64 *folds);

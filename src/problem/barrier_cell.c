@@ -34,11 +34,31 @@ PetscReal EqmBarrierStretch(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x
   return sum;
 }
 
+/* The corner of a facet, seen from the centre. */
+static void Seen(EqmBarrier barrier, const PetscReal *x, PetscInt v, PetscReal place[3])
+{
+  for (PetscInt k = 0; k < 3; k++) place[k] = x[3 * v + k] - barrier->center[k];
+}
+
+void EqmBarrierFacetNormal(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt facet, PetscInt b,
+                           PetscReal normal[3])
+{
+  const PetscInt *const v = mesh->boundary_facets + 3 * facet;
+  PetscReal p[3], q[3];
+
+  Seen(barrier, x, v[(b + 1) % 3], p);
+  Seen(barrier, x, v[(b + 2) % 3], q);
+  EqmCross(p, q, normal);
+}
+
 PetscReal EqmBarrierFacetRatio(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt facet)
 {
   const PetscInt *const v = mesh->boundary_facets + 3 * facet;
 
-  return EqmHalfDet(x + 3 * v[0], x + 3 * v[1], x + 3 * v[2]) / (3. * barrier->share[facet] * barrier->total);
+  PetscReal p[3][3];
+
+  for (PetscInt a = 0; a < 3; a++) Seen(barrier, x, v[a], p[a]);
+  return EqmHalfDet(p[0], p[1], p[2]) / (3. * barrier->share[facet] * barrier->total);
 }
 
 /* The barrier's term of a cell at the present map. */
@@ -61,7 +81,7 @@ static PetscReal ShapeFactor(EqmBarrier barrier, EqmMesh mesh, const EqmBarrierT
   return PetscSqr(barrier->total) * term->by_stretch / mesh->num_cells;
 }
 
-/* The cell between the origin and a facet of this cell. */
+/* The cell between the centre and a facet of this cell. */
 static void AddFacet(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscInt cell, PetscInt facet,
                      const EqmCellFrame *frame, PetscReal factor, PetscReal *matrix)
 {
@@ -72,7 +92,7 @@ static void AddFacet(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, Petsc
   for (PetscInt a = 0; a < 4; a++) {
     for (PetscInt b = 0; b < 3; b++) {
       if (mesh->cells[4 * cell + a] != v[b]) continue;
-      EqmCross(x + 3 * v[(b + 1) % 3], x + 3 * v[(b + 2) % 3], gradient[a]);
+      EqmBarrierFacetNormal(barrier, mesh, x, facet, b, gradient[a]);
       for (PetscInt k = 0; k < 3; k++) gradient[a][k] /= 6.;
     }
   }

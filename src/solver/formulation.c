@@ -64,6 +64,13 @@ static const EqmMethodDefaults in_ball[] = {
     {"ncg", "ncg", "fixed-point", 500, 1e-6, 0., 0., NULL, "spherical-ball"},
 };
 
+static const EqmMethodDefaults in_cube[] = {
+    {"lbfgs", "lbfgs", "fixed-point", 500, 1e-8, 0., 0., ConfigureBallLbfgs, NULL},
+    {"newton", "newton", "fixed-point", 300, 1e-9, 0., 0., NULL, NULL},
+    {"fixed-point", "fixed-point", "harmonic", 500, 1e-6, 0., 0., NULL, NULL},
+    {"ncg", "ncg", "fixed-point", 500, 1e-6, 0., 0., NULL, NULL},
+};
+
 #define METHODS(list) .methods = (list), .num_methods = sizeof(list) / sizeof((list)[0])
 
 static const EqmFormulation formulations[] = {
@@ -110,6 +117,12 @@ static const EqmFormulation formulations[] = {
      .unfold = EqmBallUnfold,
      .starts = EQM_STARTS_BALL,
      METHODS(in_ball)},
+    {.target = "cube",
+     .domain = "cube",
+     .objective = &EqmObjectiveAuthalic,
+     .unfold = EqmBallUnfold,
+     .starts = EQM_STARTS_BALL,
+     METHODS(in_cube)},
 };
 enum { NUM_FORMULATIONS = sizeof(formulations) / sizeof(formulations[0]) };
 

@@ -39,60 +39,7 @@ PetscErrorCode EqmSolverDestroy(EqmSolver *solver)
   PetscFunctionReturn(0);
 }
 
-/* ---- set-up */
-
-static PetscErrorCode StopRequested(void *context, PetscBool *stop)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmCheckpointStopRequested(context, stop));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CreateProblem(EqmSolver solver)
-{
-  const EqmSolverSettings *const set = &solver->settings;
-  EqmDomainOptions options = {.corners = set->has_corners ? set->corners : NULL,
-                              .boundary_angles = set->boundary_angles[0] ? set->boundary_angles : NULL};
-  PetscReal *angles;
-  EqmDomain domain;
-
-  PetscFunctionBegin;
-  PetscCall(EqmSolverHeldAngles(solver, &angles));
-  options.held_angles = angles;
-  PetscCall(EqmDomainCreate(solver->mesh,
-                            solver->defaults.domain ? solver->defaults.domain : solver->formulation->domain, &options,
-                            &domain));
-  PetscCall(PetscFree(angles));
-  PetscCall(EqmProblemCreate(domain, solver->objective, &solver->problem));
-  solver->problem->unfolding = (EqmUnfolding)set->unfolding;
-  PetscCall(PetscStrncpy(solver->problem->prefix, solver->prefix, sizeof(solver->problem->prefix)));
-  solver->problem->notify = EqmSolverNotify;
-  solver->problem->stop_requested = StopRequested;
-  solver->problem->context = solver;
-  PetscCall(EqmIterateCreate(solver->problem, &solver->iterate));
-  PetscFunctionReturn(0);
-}
-
-/* What the objective has beside its leading term, for methods that minimise it. */
-static PetscErrorCode AddTerms(EqmSolver solver)
-{
-  const EqmProblem problem = solver->problem;
-  EqmTerm term;
-
-  PetscFunctionBegin;
-  if (!solver->method->takes_terms) PetscFunctionReturn(0);
-  if (solver->settings.balance > 0.) {
-    PetscCall(EqmTermCreateAngle(problem, solver->settings.balance, &term));
-    PetscCall(EqmProblemAddTerm(problem, term));
-  }
-  if (problem->landmarks.num_total > 0) {
-    PetscCall(EqmTermCreateLandmarks(problem, problem->landmarks.lambda, &term));
-    PetscCall(EqmProblemAddTerm(problem, term));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* ---- a solver inside the solver: the ball's start maps the surface to the sphere, with options of its own */
+/* ---- a solver inside the solver: the surface of a solid is mapped to the sphere, with options of its own */
 
 /* The solid's fixed-point iteration begins with the surface's (003 Algorithm 1). */
 static PetscErrorCode SetSurfaceDefaults(EqmSolver solver, EqmSolver sphere)
@@ -130,6 +77,62 @@ static PetscErrorCode MapSurface(void *context, EqmMesh surface, PetscReal *x, P
 
 /* ---- set-up */
 
+static PetscErrorCode StopRequested(void *context, PetscBool *stop)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmCheckpointStopRequested(context, stop));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateProblem(EqmSolver solver)
+{
+  const EqmSolverSettings *const set = &solver->settings;
+  EqmDomainOptions options = {.corners = set->has_corners ? set->corners : NULL,
+                              .boundary_angles = set->boundary_angles[0] ? set->boundary_angles : NULL};
+  PetscReal *angles, *places;
+  EqmDomain domain;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSolverHeldAngles(solver, &angles));
+  PetscCall(EqmSolverBoundaryPlaces(solver, MapSurface, &places));
+  options.held_angles = angles;
+  options.cube_places = places;
+  PetscCall(EqmDomainCreate(solver->mesh,
+                            solver->defaults.domain ? solver->defaults.domain : solver->formulation->domain, &options,
+                            &domain));
+  PetscCall(PetscFree(angles));
+  PetscCall(PetscFree(places));
+  PetscCall(EqmProblemCreate(domain, solver->objective, &solver->problem));
+  solver->problem->unfolding = (EqmUnfolding)set->unfolding;
+  PetscCall(PetscStrncpy(solver->problem->prefix, solver->prefix, sizeof(solver->problem->prefix)));
+  solver->problem->notify = EqmSolverNotify;
+  solver->problem->stop_requested = StopRequested;
+  solver->problem->context = solver;
+  PetscCall(EqmIterateCreate(solver->problem, &solver->iterate));
+  PetscFunctionReturn(0);
+}
+
+/* What the objective has beside its leading term, for methods that minimise it. */
+static PetscErrorCode AddTerms(EqmSolver solver)
+{
+  const EqmProblem problem = solver->problem;
+  EqmTerm term;
+
+  PetscFunctionBegin;
+  if (!solver->method->takes_terms) PetscFunctionReturn(0);
+  if (solver->settings.balance > 0.) {
+    PetscCall(EqmTermCreateAngle(problem, solver->settings.balance, &term));
+    PetscCall(EqmProblemAddTerm(problem, term));
+  }
+  if (problem->landmarks.num_total > 0) {
+    PetscCall(EqmTermCreateLandmarks(problem, problem->landmarks.lambda, &term));
+    PetscCall(EqmProblemAddTerm(problem, term));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- set-up */
+
 PetscErrorCode EqmSolverSetUp(EqmSolver solver)
 {
   const EqmLedger ledger = solver->mesh->ledger;
@@ -142,8 +145,6 @@ PetscErrorCode EqmSolverSetUp(EqmSolver solver)
   PetscCall(EqmCheckpointBegin(solver));
   solver->problem->landmarks = solver->landmarks; /* the problem owns the arrays from here on */
   solver->landmarks = (EqmLandmarks){0};
-  solver->settings.start.map_surface = MapSurface;
-  solver->settings.start.context = solver;
   solver->is_set_up = PETSC_TRUE;
   if (solver->settings.restart[0])
     PetscCall(EqmCheckpointLoadMap(solver));

@@ -69,6 +69,10 @@ PETSC_INTERN PetscErrorCode EqmSolverResolveSettings(EqmSolver solver);
 PETSC_INTERN PetscErrorCode EqmSolverListOptions(EqmSolver solver);
 /* ---- first_map.c: the first map: one that was given, or a start's. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverMakeFirstMap(EqmSolver solver);
+/* Say how surfaces of solids are mapped to the sphere; and of a map to the cube where its boundary lies, three
+   coordinates per local vertex, to be freed: as in the map to begin with, or by the surface's map. NULL elsewhere.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverBoundaryPlaces(EqmSolver solver, EqmMapSurface map_surface, PetscReal **places);
 /* ---- held.c: the angles that hold the boundary, per local vertex; NULL: nothing holds it. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverHeldAngles(EqmSolver solver, PetscReal **angles);
 /* ---- history.c */

@@ -1,5 +1,5 @@
-/* First maps of solids to the ball (003 section 4): the surface is mapped to the sphere by the caller's function, the
-   interior by volumetric stretch energy minimisation with the boundary held. */
+/* First maps of solids to the ball (003 section 4), and to the cube: the surface is mapped by the caller's function,
+   the interior by volumetric stretch energy minimisation with the boundary held. */
 #include "start/start.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
@@ -66,13 +66,12 @@ static void PrincipalAxes(PetscReal covariance[9], PetscReal axes[9])
 
 /* Places of the mesh's vertices, for an anisotropic scaling turned and scaled to fill the cube [-1, 1]^3 (003 (11),
    with the largest absolute value that it means). */
-static PetscErrorCode PlaceMesh(EqmProblem problem, PetscBool scaled, EqmPlace *place)
+static PetscErrorCode PlaceMesh(EqmMesh mesh, PetscBool scaled, PetscReal *x)
 {
-  const EqmMesh mesh = problem->mesh;
   PetscReal center[3], covariance[9], axes[9], local[3] = {0.}, largest[3];
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(place->x, mesh->position, 3 * mesh->num_local));
+  PetscCall(PetscArraycpy(x, mesh->position, 3 * mesh->num_local));
   if (!scaled) PetscFunctionReturn(0);
   PetscCall(Moments(mesh, center, covariance));
   PrincipalAxes(covariance, axes);
@@ -80,12 +79,12 @@ static PetscErrorCode PlaceMesh(EqmProblem problem, PetscBool scaled, EqmPlace *
     PetscReal p[3];
     for (PetscInt k = 0; k < 3; k++) p[k] = mesh->position[3 * v + k] - center[k];
     for (PetscInt k = 0; k < 3; k++) {
-      place->x[3 * v + k] = EqmDot3(axes + 3 * k, p);
-      local[k] = PetscMax(local[k], PetscAbsReal(place->x[3 * v + k]));
+      x[3 * v + k] = EqmDot3(axes + 3 * k, p);
+      local[k] = PetscMax(local[k], PetscAbsReal(x[3 * v + k]));
     }
   }
   PetscCall(MPIU_Allreduce(local, largest, 3, MPIU_REAL, MPIU_MAX, mesh->comm));
-  for (PetscInt k = 0; k < 3 * mesh->num_local; k++) place->x[k] /= largest[k % 3];
+  for (PetscInt k = 0; k < 3 * mesh->num_local; k++) x[k] /= largest[k % 3];
   PetscFunctionReturn(0);
 }
 
@@ -105,36 +104,38 @@ static PetscErrorCode CountWork(EqmLedger from, EqmLedger to)
   PetscFunctionReturn(0);
 }
 
-/* Map the boundary vertices to the sphere; interior vertices are not moved. */
-static PetscErrorCode PlaceBoundary(EqmProblem problem, const EqmStartOptions *options, EqmPlace *place)
+/* Map the boundary vertices, x, three per local vertex; interior vertices are not moved. */
+static PetscErrorCode MapBoundary(EqmMesh solid, const EqmStartOptions *options, PetscReal *x, PetscInt64 *folds)
 {
   EqmSurface surface;
   EqmLedger ledger;
   EqmMesh mesh;
-  PetscReal *slab, *x;
-  PetscInt64 folds;
+  PetscReal *slab, *image;
 
   PetscFunctionBegin;
-  PetscCall(EqmSurfaceCreate(problem->mesh, &surface));
-  PetscCall(EqmSurfaceFromSolid(surface, 3, place->x, surface->soup->vertices));
-  PetscCall(EqmLedgerCreate(problem->comm, &ledger));
+  PetscCall(EqmSurfaceCreate(solid, &surface));
+  PetscCall(EqmSurfaceFromSolid(surface, 3, x, surface->soup->vertices));
+  PetscCall(EqmLedgerCreate(solid->comm, &ledger));
   PetscCall(EqmMeshCreate(surface->soup, ledger, &mesh));
-  PetscCall(PetscMalloc1(3 * mesh->num_local, &x));
-  PetscCall(options->map_surface(options->context, mesh, x, &folds));
-  if (folds > 0)
-    PetscCall(EqmProblemNotify(problem,
-                               "the first map of the boundary has %" PetscInt64_FMT
-                               " folded triangles: folds of the solid are likely\n",
-                               folds));
+  PetscCall(PetscMalloc1(3 * mesh->num_local, &image));
+  PetscCall(options->map_surface(options->context, mesh, image, folds));
   PetscCall(PetscMalloc1(3 * (surface->soup->vertex_end - surface->soup->vertex_start), &slab));
-  PetscCall(EqmMeshVerticesToInput(mesh, surface->soup, 3, x, slab));
-  PetscCall(EqmSurfaceToSolid(surface, 3, slab, place->x));
-  PetscCall(CountWork(ledger, problem->mesh->ledger));
+  PetscCall(EqmMeshVerticesToInput(mesh, surface->soup, 3, image, slab));
+  PetscCall(EqmSurfaceToSolid(surface, 3, slab, x));
+  PetscCall(CountWork(ledger, solid->ledger));
   PetscCall(PetscFree(slab));
-  PetscCall(PetscFree(x));
+  PetscCall(PetscFree(image));
   PetscCall(EqmMeshDestroy(&mesh));
   PetscCall(EqmLedgerDestroy(&ledger));
   PetscCall(EqmSurfaceDestroy(&surface));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmStartPlaceBoundary(EqmMesh solid, const EqmStartOptions *options, PetscReal *x, PetscInt64 *folds)
+{
+  PetscFunctionBegin;
+  PetscCall(PlaceMesh(solid, options->anisotropic_scaling, x));
+  PetscCall(MapBoundary(solid, options, x, folds));
   PetscFunctionReturn(0);
 }
 
@@ -146,6 +147,24 @@ static PetscErrorCode TurnMirrored(EqmProblem problem, EqmIterate iterate)
   PetscCall(EqmImageSum(problem->mesh, iterate->image, &iterate->totals));
   if (iterate->totals.total > 0.) PetscFunctionReturn(0);
   for (PetscInt v = 0; v < problem->mesh->num_local; v++) iterate->place.x[3 * v] *= -1.;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PlaceBoundary(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+{
+  PetscInt64 folds;
+
+  PetscFunctionBegin;
+  if (!options->map_surface) {
+    PetscCall(EqmDomainPlaceBoundary(problem->domain, &iterate->place));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MapBoundary(problem->mesh, options, iterate->place.x, &folds));
+  if (folds > 0)
+    PetscCall(EqmProblemNotify(problem,
+                               "the first map of the boundary has %" PetscInt64_FMT
+                               " folded triangles: folds of the solid are likely\n",
+                               folds));
   PetscFunctionReturn(0);
 }
 
@@ -161,13 +180,13 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(6 * mesh->num_local_cells, &weights, mesh->num_local, &group));
   for (PetscInt v = 0; v < mesh->num_local; v++) group[v] = mesh->on_boundary[v] ? EQM_GROUP_FIXED : 0;
-  PetscCall(PlaceMesh(problem, options->anisotropic_scaling, &iterate->place));
+  PetscCall(PlaceMesh(mesh, options->anisotropic_scaling, iterate->place.x));
   /* L_V of the mesh's own places is the Laplacian of the Dirichlet energy: the first step is the harmonic map */
   for (PetscInt k = 0; k <= options->steps; k++) {
     PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, weights));
-    if (k == 0) PetscCall(PlaceBoundary(problem, options, &iterate->place));
+    if (k == 0) PetscCall(PlaceBoundary(problem, iterate, options));
     PetscCall(EqmHeldImprove(problem, weights, group, 3, start_tolerance, iterate->place.x));
-    if (k == 0) PetscCall(TurnMirrored(problem, iterate));
+    if (k == 0 && options->map_surface) PetscCall(TurnMirrored(problem, iterate));
     PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, (PetscBool)(k > 0))); /* successive images differ little */
   }
   PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, PETSC_FALSE));

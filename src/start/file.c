@@ -11,6 +11,8 @@
 
 /* How far a vertex may be from where the domain has it. */
 static const PetscReal tolerance = 5e-3;
+/* How far a vertex in a face of the cube may be from it: less than the first vertices off an edge are. */
+static const PetscReal on_side = 1e-6;
 
 PetscBool EqmStartIsFile(const char *name)
 {
@@ -29,10 +31,8 @@ PetscErrorCode EqmStartRequireFile(MPI_Comm comm, const char *name)
 }
 
 /* The file's coordinates per local vertex, which must be numbers. */
-static PetscErrorCode ReadPlaces(EqmProblem problem, const char *file, PetscReal *x)
+static PetscErrorCode ReadPlaces(EqmMesh mesh, PetscInt wanted, const char *target, const char *file, PetscReal *x)
 {
-  const EqmMesh mesh = problem->mesh;
-  const PetscInt wanted = problem->domain->dim;
   PetscInt dim, bad = PETSC_MAX_INT;
   PetscReal *coordinates;
   EqmMap map;
@@ -44,15 +44,15 @@ static PetscErrorCode ReadPlaces(EqmProblem problem, const char *file, PetscReal
   if (dim == wanted) PetscCall(EqmMeshVerticesFromInput(mesh, mesh->soup, dim, coordinates, x));
   PetscCall(EqmMapDestroy(&map));
   if (dim != wanted)
-    EqmFail(problem->comm, EQM_ERR_USAGE,
+    EqmFail(mesh->comm, EQM_ERR_USAGE,
             "-start %s: its map has %" PetscInt_FMT " coordinates per vertex; one to the %s has %" PetscInt_FMT, file,
-            dim, problem->domain->name, wanted);
+            dim, target, wanted);
   for (PetscInt k = 0; k < dim * mesh->num_owned; k++) {
     if (PetscIsInfOrNanReal(x[k])) bad = PetscMin(bad, mesh->vertex_input[k / dim]);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &bad, 1, MPIU_INT, MPI_MIN, mesh->comm));
   if (bad < PETSC_MAX_INT)
-    EqmFail(problem->comm, EQM_ERR_USAGE, "-start %s: the image of vertex %" PetscInt_FMT " (from 0) is not a number",
+    EqmFail(mesh->comm, EQM_ERR_USAGE, "-start %s: the image of vertex %" PetscInt_FMT " (from 0) is not a number",
             file, bad);
   PetscFunctionReturn(0);
 }
@@ -62,17 +62,19 @@ static PetscErrorCode MakeUnit(EqmProblem problem, const char *file, PetscReal *
 {
   const EqmDomain domain = problem->domain;
   const PetscBool square = (PetscBool)!strcmp(domain->name, "square");
-  const EqmDomainShape wanted = problem->mesh->cell_size == 4 ? EQM_FILLS_BALL
-                                : domain->dim == 3            ? EQM_FILLS_SPHERE
-                                : square                      ? EQM_FILLS_SQUARE
-                                                              : EQM_FILLS_DISK;
+  const PetscBool cube = (PetscBool)!strcmp(domain->name, "cube");
+  const EqmDomainShape wanted = cube                            ? EQM_FILLS_CUBE
+                                : problem->mesh->cell_size == 4 ? EQM_FILLS_BALL
+                                : domain->dim == 3              ? EQM_FILLS_SPHERE
+                                : square                        ? EQM_FILLS_SQUARE
+                                                                : EQM_FILLS_DISK;
   EqmImagePlacement placement;
 
   PetscFunctionBegin;
   PetscCall(EqmImageRecognise(problem->mesh, domain->dim, x, &placement));
   if (placement.shape != wanted)
-    EqmFail(problem->comm, EQM_ERR_USAGE, "-start %s: what its map fills: %s; what this run wants: %s",
-            file, EqmDomainShapeName(placement.shape), EqmDomainShapeName(wanted));
+    EqmFail(problem->comm, EQM_ERR_USAGE, "-start %s: what its map fills: %s; what this run wants: %s", file,
+            EqmDomainShapeName(placement.shape), EqmDomainShapeName(wanted));
   EqmImageToUnit(problem->mesh, domain->dim, &placement, x);
   PetscFunctionReturn(0);
 }
@@ -158,6 +160,12 @@ static PetscErrorCode FitCorners(EqmProblem problem, const char *file, const Eqm
           file, corner[0], corner[1], corner[2], corner[3]);
 }
 
+/* Along sides and faces coordinates are free or fixed each on its own. */
+static PetscBool IsFlat(const EqmVertexMotion *motion)
+{
+  return (PetscBool)(motion->is_free[0] || motion->is_free[1] || motion->is_free[2]);
+}
+
 /* A place goes to the nearest one where its vertex may be; false where that is far. `ideal`: where it has no choice. */
 static PetscBool Snap(const EqmVertexMotion *motion, PetscInt dim, const PetscReal *ideal, PetscReal *x)
 {
@@ -169,9 +177,9 @@ static PetscBool Snap(const EqmVertexMotion *motion, PetscInt dim, const PetscRe
     length += PetscSqr(x[k]);
   }
   for (PetscInt k = 0; k < dim; k++) {
-    if (motion == &EqmMotionCorner || motion == &EqmMotionHeldOnCircle)
+    if (motion == &EqmMotionCorner || motion == &EqmMotionCubeCorner || motion == &EqmMotionHeldOnCircle)
       x[k] = ideal[k];
-    else if (motion == &EqmMotionSideX || motion == &EqmMotionSideY)
+    else if (IsFlat(motion))
       x[k] = motion->is_free[k] ? PetscMin(PetscMax(x[k], 0.), 1.) : ideal[k];
     else
       x[k] /= PetscSqrtReal(length);
@@ -226,17 +234,36 @@ static PetscErrorCode Unfold(EqmProblem problem, EqmIterate iterate, const char 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmCubeFromFile(EqmMesh solid, const char *file, PetscReal *x)
+{
+  EqmImagePlacement placement;
+
+  PetscFunctionBegin;
+  PetscCall(ReadPlaces(solid, 3, "cube", file, x));
+  PetscCall(EqmImageRecognise(solid, 3, x, &placement));
+  if (placement.shape != EQM_FILLS_CUBE)
+    EqmFail(solid->comm, EQM_ERR_USAGE, "-start %s: what its map fills: %s; what this run wants: %s", file,
+            EqmDomainShapeName(placement.shape), EqmDomainShapeName(EQM_FILLS_CUBE));
+  EqmImageToUnit(solid, 3, &placement, x);
+  for (PetscInt k = 0; k < 3 * solid->num_local; k++) {
+    const PetscReal nearest = x[k] < .5 ? 0. : 1.;
+    if (solid->on_boundary[k / 3] && PetscAbsReal(x[k] - nearest) <= on_side) x[k] = nearest;
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
   const char *const file = options->name;
   EqmPlace ideal;
 
   PetscFunctionBegin;
-  PetscCall(ReadPlaces(problem, file, iterate->place.x));
+  PetscCall(ReadPlaces(problem->mesh, problem->domain->dim, problem->domain->name, file, iterate->place.x));
   PetscCall(MakeUnit(problem, file, iterate->place.x));
   PetscCall(TurnOver(problem, &iterate->place));
   PetscCall(EqmPlaceCreate(problem->domain, &ideal));
-  if (problem->domain->boundary_length > 0.) PetscCall(EqmDomainPlaceBoundary(problem->domain, &ideal));
+  if (problem->domain->boundary_length > 0. || problem->domain->boundary_place)
+    PetscCall(EqmDomainPlaceBoundary(problem->domain, &ideal));
   if (!strcmp(problem->domain->name, "square")) PetscCall(FitCorners(problem, file, &ideal, iterate->place.x));
   PetscCall(PlaceExactly(problem, file, &ideal, &iterate->place));
   PetscCall(EqmPlaceDestroy(&ideal));

@@ -19,7 +19,7 @@ typedef struct {
   PetscInt steps;                /* fixed-point steps after the first map; -1: the start's default */
   PetscBool center;              /* sphere: bring the mass centre to the sphere's by a Moebius map at the end */
   PetscBool anisotropic_scaling; /* ball: turn and scale the solid to fill a cube first (003 (11)) */
-  EqmMapSurface map_surface;     /* ball */
+  EqmMapSurface map_surface;     /* of solids; NULL: the domain itself has the places of its boundary */
   void *context;                 /* of map_surface */
 } EqmStartOptions;
 
@@ -56,6 +56,17 @@ PETSC_INTERN const EqmStartType EqmStartPlaneHarmonic, EqmStartPlaneFixedPoint, 
     EqmStartSphereDescending, EqmStartSphereGuarded, EqmStartSphereConformal, EqmStartSphereResolved,
     EqmStartSphereNormals, EqmStartSphereGauss, EqmStartSphereTutte, EqmStartBallHarmonic, EqmStartBallFixedPoint,
     EqmStartPlaneCascade, EqmStartSphereCascade, EqmStartFilePlane, EqmStartFileSphere, EqmStartFileBall;
+
+/* Map the boundary of a solid as its first maps do, by options->map_surface: x, three per local vertex, of boundary
+   vertices. Collective. */
+PETSC_INTERN PetscErrorCode EqmStartPlaceBoundary(EqmMesh solid, const EqmStartOptions *options, PetscReal *x,
+                                                  PetscInt64 *folds);
+/* From places of a closed surface on the sphere to places on the boundary of the unit cube, three per local vertex.
+   Errors: EQM_ERR_MESH (the surface is too coarse). Collective. */
+PETSC_INTERN PetscErrorCode EqmCubeFromSphere(EqmMesh surface, PetscReal *x);
+/* The boundary of the map to the cube that a file holds, snapped to the cube, as of EqmDomainCreateCube. Errors:
+   EQM_ERR_USAGE (it holds none), EQM_ERR_IO. Collective. */
+PETSC_INTERN PetscErrorCode EqmCubeFromFile(EqmMesh solid, const char *file, PetscReal *x);
 
 /* ---- parts that several starts use */
 /* A step in (0, 1] along a straight motion that keeps cells of positive area well away from zero: the whole one if it

@@ -1,4 +1,4 @@
-/* A term that holds the volume of the image: (T - A)^2 / T, A the image's volume and T the ball's. With it the energy
+/* A term that holds the volume of the image: (T - A)^2 / T, A the image's volume and T the target's. With it the energy
    is close to that without normalisation, sum a^2/w - 2 A + T, which no map lowers by losing volume. */
 #include "unfold/unfold.h"
 #include "domain/domain_private.h"

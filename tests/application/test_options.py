@@ -12,7 +12,7 @@ import h5py
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 from program import Program  # noqa: E402
 
-COMMANDS = ["disk", "square", "sphere", "conformal", "ball", "register", "check", "measure", "convert", "generate", "report"]
+COMMANDS = ["disk", "square", "sphere", "conformal", "ball", "cube", "register", "check", "measure", "convert", "generate", "report"]
 
 # arguments that are refused with exit code 2, and what the message holds
 REFUSED = [
