@@ -4,12 +4,13 @@
     jobs/sweep.py TABLE                             on this machine, row by row; then the result's table and its plots
     jobs/sweep.py TABLE --rows 2,5-8                some rows
     jobs/sweep.py TABLE --dry-run                   the command lines; runs nothing
+    jobs/sweep.py --columns                         what the columns of a table, and of the result's, mean
     jobs/sweep.py TABLE --list                      how far it has come; runs nothing
     jobs/sweep.py TABLE --collect                   only the result's table and the plots, of what is there
     sbatch --array=1-24%4 jobs/sweep.slurm TABLE    under Slurm; PBS and LSF: sweep.pbs, sweep.lsf; jobs/submit.py helps
     jube run jobs/sweep.xml                         under JUBE: see there
 
-What a table is: see sweep_table.py; examples lie in jobs/tables/. Meshes are looked for in --meshes (EQUIMAP_MESHES, or
+Examples of tables lie in jobs/tables/. Meshes are looked for in --meshes (EQUIMAP_MESHES, or
 here), results go to --results (EQUIMAP_RESULTS, or sweep-TABLE), a folder per row with result, summary, history and log.
 Rows whose mesh is not there are left out, and listed.
 
@@ -31,6 +32,7 @@ import sys
 import time
 
 import sweep_report
+import sweep_table
 from sweep_launch import environment, find_program, launcher
 from sweep_meshes import are_there, generate, generator, places_of
 from sweep_table import MAP_WRITTEN, OWN, STOPPED, Store, TableError, find_preset, fingerprint, generated, read_table
@@ -63,6 +65,15 @@ def row_numbers(text):
     return numbers
 
 
+class Columns(argparse.Action):
+    """Say what the columns are, and stop."""
+
+    def __call__(self, parser, *_):
+        for module in (sweep_table, sweep_report):
+            print(module.__doc__.partition("\n\n")[2].strip("\n") + "\n")
+        parser.exit()
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table")
@@ -76,6 +87,7 @@ def arguments():
     parser.add_argument("--list", action="store_true", help="say how far it has come; run nothing")
     parser.add_argument("--collect", action="store_true", help="write table and plots; run nothing")
     parser.add_argument("--numbers", action="store_true", help="print the numbers of the rows, for other programs")
+    parser.add_argument("--columns", action=Columns, nargs=0, help="say what the columns of a table and of sweep.csv mean")
     args = parser.parse_args()
     args.results = pathlib.Path(args.results or "sweep-" + pathlib.Path(args.table).stem)
     return args
@@ -205,17 +217,21 @@ def show(args, rows):
         print(f"mkdir -p {shlex.quote(str(store.folder))} && {threads}{shlex.join(command_line(args, row, store, places))}")
 
 
-def tell(args, states):
-    """How many rows are where; of those that are not finished, which."""
-    groups = {}
-    for row, state in states:
-        groups.setdefault(state, []).append(row)
-    print(", ".join(f"{len(rows)} {state}" for state, rows in groups.items()))
-    for state, rows in groups.items():
-        for row in rows if state != "finished" else ():
+def unfinished(args, states):
+    """A line for each row that is not finished."""
+    for state in dict.fromkeys(state for _, state in states if state != "finished"):
+        for row in (row for row, other in states if other == state):
             words = {"failed": Store(args.results, row).complaint(), "no mesh": ", ".join(row.meshes)}
             word = words.get(state, "")
-            print(f"  {state}: row {row.number}, {row.name}" + (f": {word}" if word else ""))
+            yield f"  {state}: row {row.number}, {row.name}" + (f": {word}" if word else "")
+
+
+def tell(args, states):
+    """How many rows are where; of those that are not finished, which."""
+    kinds = [state for _, state in states]
+    print(", ".join(f"{kinds.count(state)} {state}" for state in dict.fromkeys(kinds)))
+    for line in unfinished(args, states):
+        print(line)
 
 
 def exit_code(states, stop):
@@ -251,7 +267,8 @@ def main():
         states.append((row, state_of(args, row) if idle else process(args, row, stop)))
     tell(args, states)
     if not args.list and not args.no_collect:
-        sweep_report.write(args.results, [row for row in rows if state_of(args, row) == "finished"])
+        everywhere = [(row, state_of(args, row)) for row in rows]
+        sweep_report.write(args.results, [row for row, state in everywhere if state == "finished"], unfinished(args, everywhere))
     return exit_code(states, stop)
 
 

@@ -125,14 +125,14 @@ def write_table(lines, name):
             table.writerow({**fixed, **ours, **{f"paper.{figure}": value for figure, value in paper.items()}})
 
 
-def write(results, rows):
-    """Write results/sweep.csv, sweep.txt, energy.png and time.png of the finished rows."""
+def write(results, rows, unfinished=()):
+    """Write results/sweep.csv, sweep.txt, energy.png and time.png of the finished rows; `unfinished` are lines about the others."""
     if not rows:
         print("sweep: no row has finished: no table")
         return
     lines = [line for row in rows for line in lines_of(results, row, rows)]
     write_table(lines, results / "sweep.csv")
-    (results / "sweep.txt").write_text(sweep_text.page(lines), encoding="utf-8")
+    (results / "sweep.txt").write_text(sweep_text.page(lines, unfinished), encoding="utf-8")
     print(f"sweep: {results / 'sweep.csv'}, and for reading {results / 'sweep.txt'}")
     runs = [sweep_plots.Run(row, Store(results, row).summary(), read_history(Store(results, row)),
                             published(find_preset(row.paper))) for row in rows]

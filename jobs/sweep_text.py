@@ -1,5 +1,7 @@
-"""A sweep for people: how many rows ended how, how they stand against the papers, and a table, mesh by mesh. Used by
-sweep_report.py."""
+"""A sweep for people: how many rows ended how, a line per method, what is not finished, how the rows stand against the papers,
+and a table, mesh by mesh. Used by sweep_report.py."""
+import statistics
+
 CLOSE = .02  # energies that differ by less are taken for the same
 
 HEAD = ("row", "name", "method", "cores", "iterations", "E", "published", "ours / theirs", "SD", "folds", "seconds", "status")
@@ -17,10 +19,9 @@ def cells_of(fixed, ours, paper):
             number(ours.get("sd"), ".3e"), number(ours.get("folds"), "d"), number(ours.get("seconds"), ".1f"), fixed["status"])
 
 
-def aligned(rows):
-    """Rows of words as lines: words to the left in columns of names, numbers to the right."""
-    widths = [max(len(row[k]) for row in rows) for k in range(len(HEAD))]
-    left = {HEAD.index(word) for word in ("name", "method", "status")}
+def aligned(rows, left):
+    """Rows of words as lines: the columns `left` to the left, numbers to the right."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     for row in rows:
         yield "  ".join(cell.ljust(width) if k in left else cell.rjust(width)
                         for k, (cell, width) in enumerate(zip(row, widths))).rstrip()
@@ -38,8 +39,22 @@ def against_papers(ends):
     return text + [f"  {ratio:8.3g} times the published: {name}" for ratio, name in higher]
 
 
-def page(lines):
-    """The text of sweep.txt."""
+def by_method(ends):
+    """A line per command and method: what hundreds of rows come to."""
+    groups = {}
+    for fixed, ours, _ in ends:
+        groups.setdefault((fixed["command"], fixed["method"]), []).append((fixed, ours))
+    rows = [("command", "method", "rows", "converged", "with folds", "E, median", "largest", "seconds, median", "largest")]
+    for (command, method), members in groups.items():
+        energies, seconds = ([ours[figure] for _, ours in members] for figure in ("energy", "seconds"))
+        rows.append((command, method, str(len(members)), str(sum(fixed["status"] == "converged" for fixed, _ in members)),
+                     str(sum(ours["folds"] > 0 for _, ours in members)), format(statistics.median(energies), ".3e"),
+                     format(max(energies), ".3e"), format(statistics.median(seconds), ".1f"), format(max(seconds), ".1f")))
+    return aligned(rows, {0, 1})
+
+
+def page(lines, unfinished=()):
+    """The text of sweep.txt; `unfinished` are lines about the rows that are not among them."""
     ends = [line for line in lines if line[0]["status"] != "on the way"]
     counts = {}
     for fixed, _, _ in ends:
@@ -47,12 +62,15 @@ def page(lines):
     text = [f"{len(ends)} rows: " + ", ".join(f"{count} {status}" for status, count in counts.items())]
     folded = [fixed["name"] for fixed, ours, _ in ends if ours["folds"]]
     text += [f"with folds: {', '.join(folded)}"] if folded else []
-    text += against_papers(ends)
+    text += unfinished
+    text += ["", *by_method(ends)]
+    against = against_papers(ends)
+    text += ["", *against] if against else []
     meshes = {}
     for line in lines:
         meshes.setdefault((line[0]["mesh"], line[0]["mesh_b"]), []).append(line)
     table = [HEAD] + [cells_of(*line) for members in meshes.values() for line in members]
-    shown = list(aligned(table))
+    shown = list(aligned(table, {HEAD.index(word) for word in ("name", "method", "status")}))
     text += ["", shown[0]]
     begin = 1
     for (mesh, other), members in meshes.items():

@@ -19,6 +19,7 @@ sys.path[:0] = [str(JOBS), str(HERE.parent / "support")]
 import slurm  # noqa: E402
 import sweep_plots  # noqa: E402
 import sweep_table  # noqa: E402
+import sweep_text  # noqa: E402
 
 PATIENCE = 300  # seconds, for what takes a few, or twenty, on an idle machine
 
@@ -121,7 +122,8 @@ def check_register():
     assert (pair["mesh"], pair["mesh_b"]) == ("hills:300", "hills:500") and float(pair["landmark_error"]) < .1, pair
     assert float(pair["dissimilarity"]) > 0. and "hills:300 to hills:500" in pathlib.Path("sweep-r/sweep.txt").read_text()
     assert not list(pathlib.Path("sweep-r").glob("*/checkpoint*"))
-    documented = (JOBS / "sweep_report.py").read_text().split('"""')[1]
+    documented = sweep("--columns")
+    assert all(f"    {column} " in documented for column in ("mesh_b", "preset", "paper"))
     for column in pair:
         assert column.startswith("paper.") or column == "against" or column in documented, f"{column} is not explained"
     if importlib.util.find_spec("pandas"):
@@ -140,6 +142,22 @@ def check_series():
             run("h-3-x", "hills:300", "-max_it 9", "not converged"), run("bunny", "bunny"), run("lion", "lion"), run("lion2", "lion")]
     series = {name: len(members) for name, members in sweep_plots.series_of(runs).items()}
     assert series == {"h-*-x": 2, "h-1-y": 1, "h-3-x": 1, "bunny": 1, "lion": 1, "lion2": 1}, series
+
+
+def check_text():
+    """A summary of hundreds of rows: what they come to in a few lines, then a line per row, none too long to read."""
+    lines = []
+    for k in range(300):
+        fixed = {"row": k, "name": f"mesh{k % 50}-way{k // 50}", "command": "disk", "method": ("lm", "ncg")[k % 2], "ranks": 1, "threads": 2,
+                 "status": "converged" if k % 3 else "not converged", "mesh": f"mesh{k % 50}", "mesh_b": "", "vertices": 1000 + k}
+        lines.append((fixed, {"energy": 1e-3 * (k + 1), "sd": .1, "folds": k == 7, "iterations": k, "seconds": .5 * k}, {}))
+    head, *tables = sweep_text.page(lines, ["  failed: row 301, x: no"]).split("\n\n")
+    assert head.splitlines() == ["300 rows: 100 not converged, 200 converged", "with folds: mesh7-way0", "  failed: row 301, x: no"], head
+    ways = [line.split() for line in tables[0].splitlines()[1:]]
+    assert ways == [["disk", "lm", "150", "100", "0", "1.500e-01", "2.990e-01", "74.5", "149.0"],
+                    ["disk", "ncg", "150", "100", "1", "1.510e-01", "3.000e-01", "75.0", "149.5"]], tables[0]
+    rows = "\n".join(tables[1:]).splitlines()
+    assert len(rows) == 1 + 50 * 7 and max(map(len, rows)) < 130 and "mesh49, 1,049 vertices" in rows, rows[:9]
 
 
 def check_stop(kind, code, ranks=1, everywhere=False):
@@ -241,6 +259,7 @@ def main():
     check_change()
     check_register()
     check_series()
+    check_text()
     check_stop(signal.SIGUSR1, 75)
     check_stop(signal.SIGINT, 75)
     check_stop(signal.SIGTERM, 75, ranks=2, everywhere=True)
