@@ -22,6 +22,27 @@ for page in share/man/man1/equimap.1 share/man/man1/equimap-disk.1 share/bash-co
   [ -s "$installed/$page" ] || { echo "$page is not installed"; exit 1; }
 done
 
+# The module, where Environment Modules are: program, pages (its own and those of the system), library, Python package.
+if [ -r /usr/share/modules/init/bash ]; then
+  (
+    set +eu
+    # shellcheck source=/dev/null
+    . /usr/share/modules/init/bash
+    module use "$installed/share/modulefiles"
+    module load equimap
+    if ! { [ "$(command -v equimap)" -ef "$installed/bin/equimap" ] && [[ $MANPATH == "$installed/share/man:"* ]] && [[ ":$MANPATH:" == *::* ]] &&
+           [ "$(pkg-config --variable=prefix equimap)" -ef "$installed" ] && [[ $PYTHONPATH == "$installed/share/equimap/python"* ]]; }; then
+      echo "the module sets PATH $PATH, MANPATH $MANPATH, PKG_CONFIG_PATH $PKG_CONFIG_PATH, PYTHONPATH $PYTHONPATH"
+      exit 1
+    fi
+    module unload equimap
+    [ -z "$EQUIMAP" ] || { echo "the module leaves EQUIMAP=$EQUIMAP behind"; exit 1; }
+    echo "module: loaded and unloaded"
+  )
+else
+  echo "module: not tried, there are no Environment Modules here"
+fi
+
 cmake -S "$source_folder" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$installed" >"$work/cmake.log" || { cat "$work/cmake.log"; exit 1; }
 cmake --build "$work/cmake" >"$work/make.log" || { cat "$work/make.log"; exit 1; }
 echo "find_package:"
