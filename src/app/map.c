@@ -6,6 +6,7 @@
 #include "format/format.h"
 #include "intake/intake.h"
 #include "maprun.h"
+#include "pieces.h"
 #include "store/output.h"
 #include <string.h>
 
@@ -21,9 +22,11 @@ typedef struct {
   PetscInt hessian_eigenvalues, hessian; /* how many; of which Hessian, as in the list `hessians` */
   PetscReal radius;
   PetscBool dry_run;
+  PetscInt pieces; /* as in the list `which_pieces` */
 } MapOptions;
 
 static const char *const hessians[] = {"energy", "appendix-b"};
+static const char *const which_pieces[] = {"one", "each"};
 
 static PetscErrorCode ReadOptions(MapOptions *options)
 {
@@ -58,6 +61,10 @@ static PetscErrorCode ReadOptions(MapOptions *options)
   PetscCall(PetscOptionsBool("-repair", "mend first what is safe to mend (see equimap check)", NULL,
                              options->input.repair, &options->input.repair, NULL));
   PetscCall(EqmPrepareSetFromOptions(PetscOptionsObject, &options->input.prepare));
+  PetscCall(PetscOptionsEList("-pieces",
+                              "one: the mesh is one piece, or -prepare takes one; each: every piece is mapped to a "
+                              "target of its own",
+                              NULL, which_pieces, 2, which_pieces[options->pieces], &options->pieces, NULL));
   PetscCall(PetscOptionsReal("-noise",
                              "move every vertex of the surface along its normal by a random length of this standard "
                              "deviation, in the mesh's units: for studies of stability",
@@ -99,6 +106,27 @@ static PetscErrorCode CheckTexture(const char *command, const char *file)
   PetscFunctionReturn(0);
 }
 
+/* -pieces each: surfaces; what belongs to one run cannot be had. */
+static PetscErrorCode CheckPieces(const char *command, const MapOptions *options)
+{
+  const char *const other = options->has_checkpoint || options->has_restart ? "-checkpoint"
+                            : options->has_history                          ? "-history"
+                            : options->hessian_eigenvalues > 0              ? "-hessian_eigenvalues"
+                                                                            : NULL;
+
+  PetscFunctionBegin;
+  if (options->pieces == 0) PetscFunctionReturn(0);
+  if (!strcmp(command, "ball"))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-pieces each is for surfaces; of a solid take one piece: -piece K");
+  if (other)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-pieces each has no %s, as that is of one run; take one piece: -piece K",
+            other);
+  if (options->has_uv && !strcmp(command, "sphere"))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
+            "-uv with -pieces each is for disk and square: spheres cannot lie side by side");
+  PetscFunctionReturn(0);
+}
+
 /* Check before the run what would fail after it. */
 static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *options)
 {
@@ -120,6 +148,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
             "-hessian_eigenvalues needs SLEPc (Debian: slepc-dev); install it and build equimap again");
   }
+  PetscCall(CheckPieces(line->command, options));
   PetscCall(EqmMapCheckWritable(PETSC_COMM_WORLD, options->output));
   PetscCall(EqmIntakeChoose(PETSC_COMM_WORLD, line->num_arguments ? line->argument[0] : NULL,
                             options->has_restart ? options->restart : NULL, &options->input));
@@ -144,7 +173,8 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap map)
+/* `texture`: the map that -uv shows. */
+static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap map, EqmMap texture)
 {
   EqmStatus status;
   EqmSoup soup;
@@ -159,7 +189,7 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
     PetscCall(EqmMapGetSoup(map, &soup));
     PetscCall(EqmPrintDropped(soup, options->output, PETSC_TRUE));
   }
-  if (options->has_uv && status != EQM_STATUS_STOPPED) PetscCall(EqmMapWriteTexture(map, options->uv));
+  if (options->has_uv && status != EQM_STATUS_STOPPED) PetscCall(EqmMapWriteTexture(texture, options->uv));
   if (options->has_history) PetscCall(EqmMapWriteHistory(map, options->history));
   if (options->has_histogram) PetscCall(EqmMapWriteHistogram(map, options->histogram));
   if (options->has_ratios) PetscCall(EqmMapWriteRatioHistogram(map, options->ratios));
@@ -192,89 +222,6 @@ static PetscErrorCode TakeEigenvalues(const MapOptions *options, EqmLedger ledge
   PetscFunctionReturn(0);
 }
 
-/* What it took. */
-static PetscErrorCode PrintWork(MPI_Comm comm, const EqmMapCost *cost)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscPrintf(comm,
-                        "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT
-                        " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves\n",
-                        cost->work.evaluations, cost->work.factorizations, cost->work.coupled_factorizations,
-                        cost->work.solves));
-  PetscCall(PetscPrintf(comm,
-                        "  seconds       %.2f: read %.2f, diagnose %.2f, distribute %.2f, start %.2f, minimise %.2f, "
-                        "measure %.2f, write %.2f\n",
-                        (double)cost->total_seconds, (double)cost->phase_seconds[EQM_PHASE_READ],
-                        (double)cost->phase_seconds[EQM_PHASE_DIAGNOSE],
-                        (double)cost->phase_seconds[EQM_PHASE_DISTRIBUTE], (double)cost->phase_seconds[EQM_PHASE_START],
-                        (double)cost->phase_seconds[EQM_PHASE_MINIMISE], (double)cost->phase_seconds[EQM_PHASE_MEASURE],
-                        (double)cost->phase_seconds[EQM_PHASE_WRITE]));
-  PetscCall(PetscPrintf(comm,
-                        "  of these      METIS %.2f, assembly %.2f, factorisation %.2f, solves %.2f, kernels %.2f\n",
-                        (double)cost->event_seconds[EQM_EVENT_PARTITION],
-                        (double)cost->event_seconds[EQM_EVENT_ASSEMBLE], (double)cost->event_seconds[EQM_EVENT_FACTOR],
-                        (double)cost->event_seconds[EQM_EVENT_SOLVE], (double)cost->event_seconds[EQM_EVENT_KERNEL]));
-  PetscFunctionReturn(0);
-}
-
-/* The prepared mesh that was mapped in place of the file's. */
-static PetscErrorCode PrintPrepared(MPI_Comm comm, EqmMap prepared)
-{
-  const EqmDistortion *d;
-  PetscReal final;
-
-  PetscFunctionBegin;
-  if (!prepared) PetscFunctionReturn(0);
-  PetscCall(EqmMapGetDistortion(prepared, &d));
-  PetscCall(EqmMapGetEnergies(prepared, NULL, &final));
-  PetscCall(PetscPrintf(comm,
-                        "  prepared mesh energy %.6e   sd %.3e   min %.4g   max %.4g   folds %" PetscInt64_FMT "\n",
-                        (double) final, (double)d->ratio.sd, (double)d->ratio.min, (double)d->ratio.max, d->folds));
-  PetscFunctionReturn(0);
-}
-
-/* Print the result table: the map of the file's mesh, and that of the prepared mesh if there is one. */
-static PetscErrorCode PrintResult(const MapOptions *options, EqmMap map, EqmMap prepared)
-{
-  const EqmDistortion *d;
-  const EqmMapCost *cost;
-  const char *message;
-  PetscReal initial, final;
-  PetscInt64 boundary_folds;
-  EqmSoup soup;
-  EqmStatus status;
-  MPI_Comm comm = PETSC_COMM_WORLD;
-
-  PetscFunctionBegin;
-  PetscCall(EqmMapGetDistortion(map, &d));
-  PetscCall(EqmMapGetCost(map, &cost));
-  PetscCall(EqmMapGetStatus(map, &status, &message));
-  PetscCall(EqmMapGetEnergies(map, &initial, &final));
-  PetscCall(EqmMapGetBoundaryFolds(map, &boundary_folds));
-  PetscCall(EqmMapGetSoup(map, &soup));
-  const PetscBool is_solid = (PetscBool)(soup->cell_size == 4);
-  PetscCall(PetscPrintf(comm,
-                        "\n%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells, %" PetscInt_FMT
-                        " rank%s x %" PetscInt_FMT " thread%s\n",
-                        soup->file, soup->num_vertices, soup->num_cells, cost->ranks, cost->ranks == 1 ? "" : "s",
-                        cost->threads, cost->threads == 1 ? "" : "s"));
-  if (options->input.quiet || (prepared && status == EQM_STATUS_FOLDS))
-    PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(status), message));
-  PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double) final, (double)initial));
-  PetscCall(EqmMapViewRatios(map));
-  if (!is_solid)
-    PetscCall(PetscPrintf(comm, "  angle error   mean %.2f   median %.2f degrees\n", (double)d->angle_error.mean,
-                          (double)d->angle_error.p50));
-  PetscCall(PetscPrintf(comm, "  folds         %" PetscInt64_FMT, d->folds));
-  if (is_solid) PetscCall(PetscPrintf(comm, "   on the boundary %" PetscInt64_FMT, boundary_folds));
-  PetscCall(PetscPrintf(comm, "\n"));
-  PetscCall(PrintPrepared(comm, prepared));
-  PetscCall(PrintWork(comm, cost));
-  PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)cost->memory_total,
-                        status == EQM_STATUS_STOPPED ? options->checkpoint : options->output));
-  PetscFunctionReturn(0);
-}
-
 /* From the mesh that is mapped to the map of the mesh that was given. */
 static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *options, EqmLedger ledger,
                             const EqmIntake *input, EqmStatus *status)
@@ -286,11 +233,36 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(EqmMapRunSolve(line->command, input, &options->stop_file, ledger, &run));
   PetscCall(EqmMapRunWithoutSplits(line->command, &options->input, input, &options->stop_file, ledger, &run, &whole));
   PetscCall(TakeEigenvalues(options, ledger, run.solver, run.map));
-  PetscCall(Write(options, ledger, run.map));
-  PetscCall(PrintResult(options, run.map, run.map == run.found ? NULL : run.found));
+  PetscCall(Write(options, ledger, run.map, run.map));
   PetscCall(EqmMapGetStatus(run.map, status, NULL));
+  PetscCall(EqmMapPrintResult(options->input.quiet,
+                              *status == EQM_STATUS_STOPPED ? options->checkpoint : options->output, run.map,
+                              run.map == run.found ? NULL : run.found));
   PetscCall(EqmMapRunDestroy(&run));
   PetscCall(EqmPreparationReset(&whole.preparation));
+  PetscFunctionReturn(0);
+}
+
+/* The same for every piece. */
+static PetscErrorCode SolvePieces(const EqmCommandLine *line, const MapOptions *options, EqmLedger ledger,
+                                  const EqmIntake *input, EqmStatus *status)
+{
+  EqmPieces pieces;
+  EqmMap texture;
+  PetscInt dim;
+
+  PetscFunctionBegin;
+  PetscCall(EqmPiecesSolve(line->command, &options->input, input, &options->stop_file, ledger, &pieces));
+  PetscCall(EqmMapGetDimension(pieces.map, &dim));
+  if (options->has_uv && dim != 2)
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-uv with -pieces each is for maps to the plane");
+  texture = pieces.map;
+  if (options->has_uv) PetscCall(EqmPiecesCharts(&pieces, &texture));
+  PetscCall(Write(options, ledger, pieces.map, texture));
+  PetscCall(EqmMapPrintResult(options->input.quiet, options->output, pieces.map, NULL));
+  PetscCall(EqmMapGetStatus(pieces.map, status, NULL));
+  if (texture != pieces.map) PetscCall(EqmMapDestroy(&texture));
+  PetscCall(EqmPiecesDestroy(&pieces));
   PetscFunctionReturn(0);
 }
 
@@ -313,11 +285,16 @@ PetscErrorCode EqmCommandMap(const EqmCommandLine *line, EqmStatus *status)
   if (options.has_checkpoint) PetscCall(EqmStopWatchFile(PETSC_COMM_WORLD, options.checkpoint, &options.stop_file));
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &ledger));
   if (!options.input.quiet) PetscCall(EqmLedgerSetHook(ledger, EqmPhasePrint));
-  PetscCall(EqmIntakeRead(PETSC_COMM_WORLD, &options.input, ledger, &input));
+  if (options.pieces)
+    PetscCall(EqmIntakeReadGiven(PETSC_COMM_WORLD, &options.input, ledger, &input));
+  else
+    PetscCall(EqmIntakeRead(PETSC_COMM_WORLD, &options.input, ledger, &input));
   if (options.dry_run) {
     PetscCall(PetscPrintf(PETSC_COMM_WORLD,
                           "%s, %" PetscInt_FMT " vertices, %" PetscInt_FMT " cells: equimap %s can begin\n",
                           options.input.mesh, input.mapped->num_vertices, input.mapped->num_cells, line->command));
+  } else if (options.pieces) {
+    PetscCall(SolvePieces(line, &options, ledger, &input, status));
   } else {
     PetscCall(Solve(line, &options, ledger, &input, status));
   }

@@ -72,12 +72,15 @@ static PetscErrorCode CompareParts(const EqmIntake *intake, PetscInt num, const 
 /* EqmIntakeMarkCells - the fate of the file's cells: an EqmCellFate per cell of the slab. Collective. */
 PetscErrorCode EqmIntakeMarkCells(const EqmIntake *intake, PetscInt *mark)
 {
+  const PetscBool changed = (PetscBool)(intake->mapped != intake->given);
   const PetscInt count = intake->given->cell_end - intake->given->cell_start;
   const PetscInt num = intake->mapped->cell_end - intake->mapped->cell_start;
   PetscInt num_children = 0, *child, *parent, *value;
   PetscSF sf;
 
   PetscFunctionBegin;
+  for (PetscInt c = 0; c < count; c++) mark[c] = changed ? EQM_CELL_LEFT_OUT : EQM_CELL_MAPPED;
+  if (!changed) PetscFunctionReturn(0);
   PetscCall(PetscMalloc3(num, &child, num, &parent, num, &value));
   for (PetscInt c = 0; c < num; c++) {
     if (intake->parent[c] < 0) continue;
@@ -85,7 +88,6 @@ PetscErrorCode EqmIntakeMarkCells(const EqmIntake *intake, PetscInt *mark)
     parent[num_children++] = intake->parent[c];
   }
   PetscCall(CompareParts(intake, num_children, child, parent, value));
-  for (PetscInt c = 0; c < count; c++) mark[c] = EQM_CELL_LEFT_OUT;
   PetscCall(EqmRowsCreateSF(intake->given->comm, count, num_children, parent, &sf));
   PetscCall(PetscSFReduceBegin(sf, MPIU_INT, value, mark, MPI_MAX));
   PetscCall(PetscSFReduceEnd(sf, MPIU_INT, value, mark, MPI_MAX));
@@ -184,6 +186,32 @@ static PetscErrorCode Judge(EqmMap found, const char *target, PetscInt64 num_cut
   PetscFunctionReturn(0);
 }
 
+/* EqmIntakeMeasureCells - measure a map on those cells of the file that `mark` (EqmCellFate per cell of the slab) calls
+   mapped: fills distortion and ratios of `map` from `coordinates`, map->dim per vertex of the slab. Collective. */
+PetscErrorCode EqmIntakeMeasureCells(EqmSoup given, EqmLedger ledger, const PetscInt *mark,
+                                     const PetscReal *coordinates, EqmMap map)
+{
+  MappedCells cells;
+  PetscReal *x;
+  EqmMap measured;
+  EqmMesh mesh;
+
+  PetscFunctionBegin;
+  PetscCall(CollectMapped(given, mark, &cells));
+  PetscCall(EqmMeshCreate(cells.soup, ledger, &mesh));
+  PetscCall(EqmMapCreate(cells.soup, map->dim, &measured));
+  PetscCall(PetscMalloc1(map->dim * mesh->num_local, &x));
+  PetscCall(EqmMeshVerticesFromInput(mesh, cells.soup, map->dim, coordinates, x));
+  PetscCall(EqmMapMeasure(measured, mesh, x));
+  PetscCall(CopyDistortion(measured, &cells, map));
+  PetscCall(PetscFree(x));
+  PetscCall(EqmMapDestroy(&measured));
+  PetscCall(EqmMeshDestroy(&mesh));
+  PetscCall(EqmSoupDestroy(&cells.soup));
+  PetscCall(PetscFree(cells.cell));
+  PetscFunctionReturn(0);
+}
+
 /* EqmIntakeMeasureGiven - measure a map on the cells of the file, where a prepared mesh has been mapped in their place.
 
    Collective. found - the map of intake->mapped; map - as EqmIntakeTakeMap made it of `found`: gets distortion, ratios,
@@ -193,32 +221,17 @@ static PetscErrorCode Judge(EqmMap found, const char *target, PetscInt64 num_cut
 PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, EqmMap found, EqmMap map)
 {
   const EqmSoup given = intake->given;
-  MappedCells cells;
   PetscInt64 num_cut = 0;
   PetscInt *mark;
-  PetscReal *x;
-  EqmMap measured;
-  EqmMesh mesh;
 
   PetscFunctionBegin;
   if (map == found) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(given->cell_end - given->cell_start, &mark));
   PetscCall(EqmIntakeMarkCells(intake, mark));
-  PetscCall(CollectMapped(given, mark, &cells));
-  PetscCall(EqmMeshCreate(cells.soup, ledger, &mesh));
-  PetscCall(EqmMapCreate(cells.soup, map->dim, &measured));
-  PetscCall(PetscMalloc1(map->dim * mesh->num_local, &x));
-  PetscCall(EqmMeshVerticesFromInput(mesh, cells.soup, map->dim, map->coordinates, x));
-  PetscCall(EqmMapMeasure(measured, mesh, x));
-  PetscCall(CopyDistortion(measured, &cells, map));
+  PetscCall(EqmIntakeMeasureCells(given, ledger, mark, map->coordinates, map));
   for (PetscInt c = 0; c < given->cell_end - given->cell_start; c++) num_cut += mark[c] == EQM_CELL_CUT;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &num_cut, 1, MPIU_INT64, MPI_SUM, given->comm));
   PetscCall(Judge(found, intake->target, num_cut, map));
-  PetscCall(PetscFree(x));
-  PetscCall(EqmMapDestroy(&measured));
-  PetscCall(EqmMeshDestroy(&mesh));
-  PetscCall(EqmSoupDestroy(&cells.soup));
-  PetscCall(PetscFree(cells.cell));
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);
 }

@@ -45,11 +45,22 @@ PETSC_INTERN PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions 
                                           EqmIntake *intake);
 PETSC_INTERN PetscErrorCode EqmIntakeWithoutSplits(const EqmIntakeOptions *options, const EqmIntake *intake,
                                                    EqmIntake *whole, PetscBool *can);
+/* EqmIntakeReadGiven - only read the mesh, with density and noise: of a mesh whose pieces are mapped one by one.
+   EqmIntakePiece - prepare the piece of options->prepare, out of that mesh.
+
+   Collective. piece - shares `given` with `intake`; free its preparation with EqmPreparationReset. num_pieces - how
+   many there are. can - it can be mapped; else `reason` says why not. */
+PETSC_INTERN PetscErrorCode EqmIntakeReadGiven(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger,
+                                               EqmIntake *intake);
+PETSC_INTERN PetscErrorCode EqmIntakePiece(const EqmIntakeOptions *options, const EqmIntake *intake, EqmIntake *piece,
+                                           PetscInt *num_pieces, PetscBool *can, char *reason, size_t length);
 PETSC_INTERN PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap found, EqmMap *map);
 /* ---- given.c */
 /* The fate of a cell of the file; the highest of its parts. */
 typedef enum { EQM_CELL_LEFT_OUT, EQM_CELL_MAPPED, EQM_CELL_TURNED, EQM_CELL_CUT } EqmCellFate;
 PETSC_INTERN PetscErrorCode EqmIntakeMarkCells(const EqmIntake *intake, PetscInt *mark);
+PETSC_INTERN PetscErrorCode EqmIntakeMeasureCells(EqmSoup given, EqmLedger ledger, const PetscInt *mark,
+                                                  const PetscReal *coordinates, EqmMap map);
 PETSC_INTERN PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, EqmMap found, EqmMap map);
 /* ---- intake.c */
 PETSC_INTERN PetscErrorCode EqmIntakeDestroy(EqmIntake *intake);

@@ -178,7 +178,9 @@ static PetscErrorCode RunSteps(EqmSoup given, const EqmPrepareOptions *options, 
   PetscCall(Begin(given, preparation));
   for (PetscInt s = 0; s < NUM_STEPS; s++) {
     if (without_weld && steps[s].run == EqmStepWeld) continue;
-    if (!automatic && !IsListed(options->steps, steps[s].name)) continue;
+    if (!automatic && !IsListed(options->steps, steps[s].name) &&
+        !(options->each_piece && steps[s].run == EqmStepLargest))
+      continue;
     PetscCall(RunStep(&steps[s], options, num_given, preparation));
   }
   if (options->repair || automatic) PetscCall(RunStep(&repair, options, num_given, preparation));
@@ -191,8 +193,9 @@ PetscErrorCode EqmSoupPrepare(EqmSoup given, const EqmPrepareOptions *options, E
 
   PetscFunctionBegin;
   if (automatic) PetscCall(IsReady(given, options->target, &ready));
-  PetscCall(RunSteps(given, options, (PetscBool)(automatic && !ready), PETSC_FALSE, preparation));
-  if (!automatic || ready || !preparation->num_steps || strcmp(preparation->step[0].step, "weld"))
+  PetscCall(RunSteps(given, options, (PetscBool)(automatic && !ready), options->without_weld, preparation));
+  if (!automatic || ready || options->each_piece || !preparation->num_steps ||
+      strcmp(preparation->step[0].step, "weld"))
     PetscFunctionReturn(0);
   /* a seam may be the cut that makes a surface a disk: if the mesh is refused after welding, skip it */
   PetscCall(IsReady(preparation->soup, options->target, &ready));

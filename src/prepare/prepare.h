@@ -10,6 +10,9 @@ typedef struct {
   char steps[256];          /* "none"; "auto": all steps and EqmSoupRepair if the target does not take the mesh
                                as it is; or steps, separated by commas */
   PetscInt piece;           /* of `largest`: which piece to keep, 1 is the largest */
+  PetscBool each_piece;     /* the piece is one of all that are prepared one after the other: `largest` is among the
+                               steps, and what comes before it is the same for all */
+  PetscBool without_weld;   /* no `weld`, although the list is auto */
   PetscReal hole_weight;    /* of `holes`: density of the cells that fill holes */
   PetscReal weld_tolerance; /* of `weld`: distance, as a share of the mesh's diameter */
   PetscReal handle_length;  /* of `handles`: loops up to this length, as a share of the mesh's diameter, are cut */
