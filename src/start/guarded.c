@@ -65,7 +65,7 @@ static PetscErrorCode MakeTutte(EqmProblem problem, EqmIterate iterate, PetscInt
 
   (void)step, (void)weights;
   PetscFunctionBegin;
-  PetscCall(EqmSphereTutte(problem, iterate, &found));
+  PetscCall(EqmSphereTutte(problem, iterate, EQM_HEMISPHERE_UNIFORM, &found));
   PetscCheck(found, problem->comm, EQM_ERR_MESH, "no closed curve was found that cuts the surface in two disks");
   PetscFunctionReturn(0);
 }

@@ -1,33 +1,15 @@
 /* Tutte's map to the sphere by two hemispheres (004 section 5.1): a closed curve cuts the surface in two disks, each is
-   mapped to a round disk by equal weights with the same boundary, and these become the two hemispheres.
+   mapped to a round disk with the same boundary (hemisphere_map.c), and these become the two hemispheres.
 
    The curve is a level of the function that is one at one pole of the surface, zero at the other, and a mean of its
    neighbours elsewhere: what lies below and above is connected, as every vertex has a lower and a higher neighbour. The
    curve runs through triangles and edges, not through vertices, so no vertex is on it twice. */
-#include "start/start.h"
-#include "mesh/mesh_private.h"
+#include "start/hemispheres.h"
 #include "measure/quantile.h"
 #include "unfold/unfold.h"
-#include <stdlib.h>
-
-/* A triangle that the curve runs through, from the crossing of one edge to that of another. */
-typedef struct {
-  PetscInt from[2], to[2]; /* the edges: input numbers of their lower and higher end */
-  PetscReal place[3];      /* where the first edge is crossed, on the surface */
-  PetscReal angle;         /* of that crossing along the curve */
-} Crossing;
-
-typedef struct {
-  EqmProblem problem;
-  PetscReal *input;  /* input number per local vertex */
-  PetscReal *height; /* the function, per local vertex */
-  PetscReal level;
-  PetscInt count;     /* of all ranks */
-  Crossing *crossing; /* sorted by `from`; the same on every rank: as long as the curve, not as the mesh */
-} Cut;
 
 /* The vertex with the largest value, ties by input number; its input number and position. */
-static PetscErrorCode Farthest(const Cut *cut, const PetscReal from[3], PetscInt *vertex, PetscReal position[3])
+static PetscErrorCode Farthest(const EqmCut *cut, const PetscReal from[3], PetscInt *vertex, PetscReal position[3])
 {
   const EqmMesh mesh = cut->problem->mesh;
   PetscReal best = -1., most, mine[3] = {0., 0., 0.};
@@ -51,7 +33,7 @@ static PetscErrorCode Farthest(const Cut *cut, const PetscReal from[3], PetscInt
 }
 
 /* Two poles far apart, and the function between them. */
-static PetscErrorCode ComputeHeight(Cut *cut, const PetscReal *weights, signed char *group)
+static PetscErrorCode ComputeHeight(EqmCut *cut, const PetscReal *weights, signed char *group)
 {
   const EqmMesh mesh = cut->problem->mesh;
   PetscReal sum[3] = {0., 0., 0.}, middle[3], place[2][3];
@@ -72,49 +54,27 @@ static PetscErrorCode ComputeHeight(Cut *cut, const PetscReal *weights, signed c
   PetscFunctionReturn(0);
 }
 
-static inline PetscBool IsBelow(const Cut *cut, PetscInt v)
-{
-  return (PetscBool)(cut->height[v] < cut->level);
-}
-
-static PetscBool IsCut(const Cut *cut, PetscInt cell)
+static PetscBool IsCut(const EqmCut *cut, PetscInt cell)
 {
   const PetscInt *const v = cut->problem->mesh->cells + 3 * cell;
-  return (PetscBool)(IsBelow(cut, v[0]) != IsBelow(cut, v[1]) || IsBelow(cut, v[0]) != IsBelow(cut, v[2]));
-}
-
-static int CompareEdges(const PetscInt a[2], const PetscInt b[2])
-{
-  if (a[0] != b[0]) return a[0] < b[0] ? -1 : 1;
-  return (a[1] > b[1]) - (a[1] < b[1]);
-}
-
-static int CompareCrossings(const void *a, const void *b)
-{
-  return CompareEdges(((const Crossing *)a)->from, ((const Crossing *)b)->from);
-}
-
-/* The crossing that leaves edge (below, above); NULL if the curve does not cross it. */
-static Crossing *FindCrossing(const Cut *cut, PetscInt below, PetscInt above)
-{
-  const Crossing wanted = {.from = {below, above}};
-  return bsearch(&wanted, cut->crossing, (size_t)cut->count, sizeof(Crossing), CompareCrossings);
+  return (PetscBool)(EqmCutIsBelow(cut, v[0]) != EqmCutIsBelow(cut, v[1]) ||
+                     EqmCutIsBelow(cut, v[0]) != EqmCutIsBelow(cut, v[2]));
 }
 
 /* The lower side is on the curve's left: in triangle (a, b, c) with a alone on its side it runs from edge ab to edge
    ca if a is above, else from ca to ab. */
-static Crossing CrossCell(const Cut *cut, PetscInt cell)
+static EqmCrossing CrossCell(const EqmCut *cut, PetscInt cell)
 {
   const EqmMesh mesh = cut->problem->mesh;
   PetscInt alone = 0, edge[2][2];
-  Crossing crossing = {.angle = 0.};
+  EqmCrossing crossing = {.angle = 0.};
 
   for (PetscInt k = 0; k < 3; k++) {
     const PetscInt *const v = mesh->cells + 3 * cell;
-    if (IsBelow(cut, v[(k + 1) % 3]) == IsBelow(cut, v[(k + 2) % 3])) alone = k;
+    if (EqmCutIsBelow(cut, v[(k + 1) % 3]) == EqmCutIsBelow(cut, v[(k + 2) % 3])) alone = k;
   }
   const PetscInt a = mesh->cells[3 * cell + alone];
-  const PetscBool below = IsBelow(cut, a);
+  const PetscBool below = EqmCutIsBelow(cut, a);
   for (PetscInt k = 0; k < 2; k++) { /* if a is above, the curve enters through the edge to the next corner */
     const PetscInt other = mesh->cells[3 * cell + (alone + 1 + (below ? 1 - k : k)) % 3];
     edge[k][0] = below ? a : other;
@@ -132,10 +92,10 @@ static Crossing CrossCell(const Cut *cut, PetscInt cell)
 }
 
 /* Collect the curve at the present level on every rank. */
-static PetscErrorCode CollectCurve(Cut *cut)
+static PetscErrorCode CollectCurve(EqmCut *cut)
 {
   const EqmMesh mesh = cut->problem->mesh;
-  Crossing *mine;
+  EqmCrossing *mine;
   PetscMPIInt num_mine = 0, *count, *place;
   MPI_Datatype type;
 
@@ -152,24 +112,24 @@ static PetscErrorCode CollectCurve(Cut *cut)
   for (PetscMPIInt r = 0; r < mesh->size; r++) place[r + 1] = place[r] + count[r];
   cut->count = place[mesh->size];
   PetscCall(PetscMalloc1(cut->count, &cut->crossing));
-  PetscCallMPI(MPI_Type_contiguous(sizeof(Crossing), MPI_BYTE, &type));
+  PetscCallMPI(MPI_Type_contiguous(sizeof(EqmCrossing), MPI_BYTE, &type));
   PetscCallMPI(MPI_Type_commit(&type));
   PetscCallMPI(MPI_Allgatherv(mine, num_mine, type, cut->crossing, count, place, type, mesh->comm));
   PetscCallMPI(MPI_Type_free(&type));
   PetscCall(PetscFree3(mine, count, place));
-  qsort(cut->crossing, (size_t)cut->count, sizeof(Crossing), CompareCrossings);
+  EqmCutSort(cut);
   PetscFunctionReturn(0);
 }
 
 /* Angles by arc length. False if the crossings are not one closed curve. */
-static PetscBool WalkCurve(Cut *cut)
+static PetscBool WalkCurve(EqmCut *cut)
 {
   PetscReal length = 0.;
-  Crossing *here = cut->crossing;
+  EqmCrossing *here = cut->crossing;
 
   if (cut->count < 3) return PETSC_FALSE;
   for (PetscInt k = 0; k < cut->count; k++) {
-    Crossing *const next = FindCrossing(cut, here->to[0], here->to[1]);
+    EqmCrossing *const next = EqmCutFindCrossing(cut, here->to[0], here->to[1]);
     if (!next || (next == cut->crossing) != (k == cut->count - 1)) return PETSC_FALSE;
     const PetscReal *const p = here->place, *const q = next->place;
     here->angle = length;
@@ -183,7 +143,7 @@ static PetscBool WalkCurve(Cut *cut)
 /* Levels between the quartiles, by the curve's length in triangles over the smaller side's number of vertices. */
 enum { NUM_LEVELS = 15 };
 
-static PetscErrorCode RankLevels(const Cut *cut, PetscReal level[NUM_LEVELS], PetscReal cost[NUM_LEVELS])
+static PetscErrorCode RankLevels(const EqmCut *cut, PetscReal level[NUM_LEVELS], PetscReal cost[NUM_LEVELS])
 {
   const EqmMesh mesh = cut->problem->mesh;
   PetscReal *sample, sums[2 * NUM_LEVELS] = {0.};
@@ -195,9 +155,9 @@ static PetscErrorCode RankLevels(const Cut *cut, PetscReal level[NUM_LEVELS], Pe
   PetscCall(EqmStatisticsOf(mesh->comm, mesh->num_owned, sample, &statistics));
   PetscCall(PetscFree(sample));
   for (PetscInt l = 0; l < NUM_LEVELS; l++) {
-    Cut at = *cut;
+    EqmCut at = *cut;
     at.level = level[l] = statistics.p25 + (statistics.p75 - statistics.p25) * (l + 1) / (NUM_LEVELS + 1);
-    for (PetscInt v = 0; v < mesh->num_owned; v++) sums[2 * l] += IsBelow(&at, v);
+    for (PetscInt v = 0; v < mesh->num_owned; v++) sums[2 * l] += EqmCutIsBelow(&at, v);
     for (PetscInt c = 0; c < mesh->num_owned_cells; c++) sums[2 * l + 1] += IsCut(&at, c);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 2 * NUM_LEVELS, MPIU_REAL, MPIU_SUM, mesh->comm));
@@ -208,7 +168,7 @@ static PetscErrorCode RankLevels(const Cut *cut, PetscReal level[NUM_LEVELS], Pe
 
 /* The cheapest level whose curve closes. Where the function is flat, in limbs that hold neither pole, rounding can tear
    a curve to pieces. */
-static PetscErrorCode ChooseLevel(Cut *cut, PetscBool *found)
+static PetscErrorCode ChooseLevel(EqmCut *cut, PetscBool *found)
 {
   PetscReal level[NUM_LEVELS], cost[NUM_LEVELS];
   PetscBool closed = PETSC_FALSE;
@@ -227,60 +187,10 @@ static PetscErrorCode ChooseLevel(Cut *cut, PetscBool *found)
   PetscFunctionReturn(0);
 }
 
-/* Right-hand side from the held circle: an edge that the curve crosses joins each of its ends to the crossing's point
-   on the circle. Interior edges are visited from two cells, with half of the weight each. */
-static PetscErrorCode CircleRightHandSide(const Cut *cut, PetscReal *columns)
-{
-  const EqmMesh mesh = cut->problem->mesh;
-  const PetscInt n = mesh->num_owned;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(columns, 2 * n));
-  for (PetscInt k = 0; k < 3 * mesh->num_local_cells; k++) {
-    const PetscInt i = mesh->cells[k], j = mesh->cells[k - k % 3 + (k + 1) % 3];
-    const PetscInt low = IsBelow(cut, i) ? i : j, high = low == i ? j : i;
-    if (IsBelow(cut, i) == IsBelow(cut, j) || (i >= n && j >= n)) continue;
-    const Crossing *const crossing = FindCrossing(cut, (PetscInt)cut->input[low], (PetscInt)cut->input[high]);
-    for (PetscInt c = 0; c < 2; c++) {
-      const PetscReal value = .5 * (c == 0 ? PetscCosReal(crossing->angle) : PetscSinReal(crossing->angle));
-      if (low < n) columns[c * n + low] += value;
-      if (high < n) columns[c * n + high] += value;
-    }
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Both disks in one linear system, which the curve decouples; then each onto its hemisphere by stereographic
-   projection. */
-static PetscErrorCode MapHemispheres(Cut *cut, EqmIterate iterate, const PetscReal *weights, signed char *group)
-{
-  const EqmProblem problem = cut->problem;
-  const PetscInt n = problem->mesh->num_owned;
-  PetscReal *columns;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(2 * n, &columns));
-  for (PetscInt v = 0; v < problem->mesh->num_local; v++) group[v] = IsBelow(cut, v) ? 0 : 1;
-  PetscCall(CircleRightHandSide(cut, columns));
-  PetscCall(EqmGroupFactor(problem, weights, group, NULL));
-  PetscCall(EqmGroupSolve(problem, 2, columns));
-  for (PetscInt v = 0; v < n; v++) {
-    const PetscReal p = columns[v], q = columns[n + v], squared = p * p + q * q;
-    PetscReal *const x = iterate->place.x + 3 * v;
-    x[0] = 2. * p / (1. + squared);
-    x[1] = 2. * q / (1. + squared);
-    x[2] = (group[v] == 0 ? -1. : 1.) * (1. - squared) / (1. + squared);
-  }
-  PetscCall(PetscFree(columns));
-  PetscCall(EqmMeshUpdateGhosts(problem->mesh, 3, iterate->place.x));
-  PetscCall(EqmSphereOrient(problem, iterate));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate, PetscBool *found)
+PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate, EqmHemisphereWeights kind, PetscBool *found)
 {
   const EqmMesh mesh = problem->mesh;
-  Cut cut = {.problem = problem};
+  EqmCut cut = {.problem = problem};
   PetscReal *weights;
   signed char *group;
 
@@ -292,7 +202,7 @@ PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate, PetscBool 
   PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_UNIFORM, NULL, weights));
   PetscCall(ComputeHeight(&cut, weights, group));
   PetscCall(ChooseLevel(&cut, found));
-  if (*found) PetscCall(MapHemispheres(&cut, iterate, weights, group));
+  if (*found) PetscCall(EqmHemispheresMap(&cut, kind, iterate, group));
   PetscCall(PetscFree(cut.crossing));
   PetscCall(PetscFree4(cut.input, cut.height, weights, group));
   PetscFunctionReturn(0);
@@ -306,7 +216,7 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * problem->mesh->num_local_cells, &weights));
-  PetscCall(EqmSphereTutte(problem, iterate, &found));
+  PetscCall(EqmSphereTutte(problem, iterate, options->hemisphere_weights, &found));
   if (!found) {
     EqmFail(problem->comm, EQM_ERR_MESH,
             "-start tutte: no closed curve was found that cuts the surface in two disks; leave -start out");
@@ -318,5 +228,5 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
 }
 
 const EqmStartType EqmStartSphereTutte = {EQM_STARTS_SPHERE, "tutte",
-                                          "two hemispheres, each by equal weights, and unfolding (004 section 5.1)", 0,
+                                          "two hemispheres, each by -start_weights, and unfolding (004 section 5.1)", 0,
                                           Run};

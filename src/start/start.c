@@ -64,6 +64,9 @@ PetscErrorCode EqmStartOptionsDefault(EqmStartOptions *options)
   PetscFunctionReturn(0);
 }
 
+static const char *const hemisphere_weights[] = {
+    "uniform", "harmonic", "mean-value", "semi-cotangent", "EqmHemisphereWeights", "", NULL};
+
 PetscErrorCode EqmStartSetFromOptions(EqmStartFamily family, EqmStartOptions *options,
                                       PetscOptionItems *PetscOptionsObject)
 {
@@ -75,6 +78,12 @@ PetscErrorCode EqmStartSetFromOptions(EqmStartFamily family, EqmStartOptions *op
                                sizeof(options->name), NULL));
   PetscCall(PetscOptionsInt("-start_steps", "fixed-point steps after the first map (-1: as the start has it)",
                             "EqmSolverSetFromOptions", options->steps, &options->steps, NULL));
+  if (family == EQM_STARTS_SPHERE)
+    PetscCall(PetscOptionsEnum("-start_weights",
+                               "of the start tutte: each vertex of a hemisphere is the mean of its neighbours with "
+                               "these weights (004 section 5.1); harmonic ones may fold",
+                               "EqmSolverSetFromOptions", hemisphere_weights, (PetscEnum)options->hemisphere_weights,
+                               (PetscEnum *)&options->hemisphere_weights, NULL));
   if (family == EQM_STARTS_SPHERE)
     PetscCall(PetscOptionsBool("-start_center",
                                "after the first map the Mobius map that brings its mass centre to the sphere's",

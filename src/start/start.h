@@ -13,10 +13,19 @@ typedef enum { EQM_STARTS_PLANE, EQM_STARTS_SPHERE, EQM_STARTS_BALL } EqmStartFa
    A callback of the ball's start. Collective. */
 typedef PetscErrorCode (*EqmMapSurface)(void *context, EqmMesh surface, PetscReal *x, PetscInt64 *folds);
 
+/* How each vertex of a hemisphere is the mean of its neighbours (004 section 5.1). */
+typedef enum {
+  EQM_HEMISPHERE_UNIFORM,
+  EQM_HEMISPHERE_HARMONIC,
+  EQM_HEMISPHERE_MEAN_VALUE,
+  EQM_HEMISPHERE_SEMI_COTANGENT
+} EqmHemisphereWeights;
+
 /* Settings of a start. */
 typedef struct {
-  char name[PETSC_MAX_PATH_LEN]; /* of a start or a file; empty: the target's own for the method */
-  PetscInt steps;                /* fixed-point steps after the first map; -1: the start's default */
+  char name[PETSC_MAX_PATH_LEN];           /* of a start or a file; empty: the target's own for the method */
+  PetscInt steps;                          /* fixed-point steps after the first map; -1: the start's default */
+  EqmHemisphereWeights hemisphere_weights; /* sphere: of the start tutte */
   PetscBool center;              /* sphere: bring the mass centre to the sphere's by a Moebius map at the end */
   PetscBool anisotropic_scaling; /* ball: turn and scale the solid to fill a cube first (003 (11)) */
   EqmMapSurface map_surface;     /* of solids; NULL: the domain itself has the places of its boundary */
@@ -83,9 +92,10 @@ PETSC_INTERN PetscErrorCode EqmSphereLinear(EqmProblem problem, EqmIterate itera
    vertex. Collective. */
 PETSC_INTERN PetscErrorCode EqmDipoleSolve(EqmProblem problem, const EqmPlace *place, const PetscInt corner[3],
                                            const PetscReal charge[6], PetscReal *z);
-/* Tutte's map by two hemispheres (004 section 5.1), with equal weights; may fold along the equator. Where no closed
+/* Tutte's map by two hemispheres (004 section 5.1); may fold along the equator. Where no closed
    curve was `found` that cuts the surface in two, the map is as it was. Collective. */
-PETSC_INTERN PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate, PetscBool *found);
+PETSC_INTERN PetscErrorCode EqmSphereTutte(EqmProblem problem, EqmIterate iterate, EqmHemisphereWeights kind,
+                                           PetscBool *found);
 /* Vertex normals (004 Definition 5.1), smoothed by heat flow for as long as triangles fold, `steps` times at most.
    Collective. */
 PETSC_INTERN PetscErrorCode EqmSphereGauss(EqmProblem problem, EqmIterate iterate, PetscInt steps);

@@ -3,6 +3,7 @@
 #include "support/runs.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
+#include <math.h>
 
 static PetscErrorCode Start(TestMesh *test, const char *options, EqmSolver *solver)
 {
@@ -71,6 +72,62 @@ static PetscErrorCode TestRanks(const char *start)
   PetscFunctionReturn(0);
 }
 
+/* The weight of corner a for corner b of a triangle with the other corner c, by the lengths of its sides. */
+static PetscReal WeightFor(const char *kind, const PetscReal *a, const PetscReal *b, const PetscReal *c)
+{
+  PetscReal squared[3] = {0., 0., 0.}; /* of the sides opposite a, b, c */
+
+  for (PetscInt k = 0; k < 3; k++) {
+    squared[0] += PetscSqr(b[k] - c[k]);
+    squared[1] += PetscSqr(c[k] - a[k]);
+    squared[2] += PetscSqr(a[k] - b[k]);
+  }
+  const PetscReal at_a = acos((squared[1] + squared[2] - squared[0]) / (2. * PetscSqrtReal(squared[1] * squared[2])));
+  const PetscReal at_c = acos((squared[0] + squared[1] - squared[2]) / (2. * PetscSqrtReal(squared[0] * squared[1])));
+  if (!strcmp(kind, "uniform")) return 1.;
+  if (!strcmp(kind, "harmonic")) return 1. / tan(at_c);
+  if (!strcmp(kind, "semi-cotangent")) return 1. / tan(.5 * at_c);
+  return tan(.5 * at_a) / PetscSqrtReal(squared[2]);
+}
+
+/* Stereographic images of vertices whose neighbours are all in the same hemisphere are the means of those of the
+   neighbours; nothing is folded. */
+static PetscErrorCode TestHemisphereWeights(const char *kind)
+{
+  TestMesh test;
+  EqmSolver solver;
+  PetscReal *sum, worst = 0.;
+  PetscBool *cut;
+  char options[96];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(options, sizeof(options), "-start tutte -start_weights %s", kind));
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "head", 900, 2, &test));
+  PetscCall(Start(&test, options, &solver));
+  CHECK(solver->iterate->totals.folds == 0, "%s: %d folds", kind, (int)solver->iterate->totals.folds);
+  const EqmMesh mesh = test.mesh;
+  const PetscReal *const x = solver->iterate->place.x;
+  PetscCall(PetscCalloc2(3 * mesh->num_local, &sum, mesh->num_local, &cut));
+  for (PetscInt k = 0; k < 6 * mesh->num_local_cells; k++) {
+    const PetscInt *const v = mesh->cells + 3 * (k / 6), a = v[k % 3], b = v[(k % 3 + 1 + k / 3 % 2) % 3],
+                          c = v[(k % 3 + 2 - k / 3 % 2) % 3];
+    const PetscReal *const p = mesh->position, w = WeightFor(kind, p + 3 * a, p + 3 * b, p + 3 * c);
+    cut[a] = (PetscBool)(cut[a] || x[3 * a + 2] * x[3 * b + 2] <= 0.);
+    for (PetscInt d = 0; d < 2; d++)
+      sum[3 * a + d] +=
+          w * (x[3 * b + d] / (1. + PetscAbsReal(x[3 * b + 2])) - x[3 * a + d] / (1. + PetscAbsReal(x[3 * a + 2])));
+    sum[3 * a + 2] += PetscAbsReal(w);
+  }
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    for (PetscInt d = 0; d < 2 && !cut[v]; d++) worst = PetscMax(worst, PetscAbsReal(sum[3 * v + d]) / sum[3 * v + 2]);
+  }
+  CHECK(worst < 1e-12, "%s: a vertex is %g away from the mean of its neighbours", kind, (double)worst);
+  PetscCall(PetscFree2(sum, cut));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
 /* -start_center leaves no mass centre. */
 static PetscErrorCode TestCentered(const char *start)
 {
@@ -120,8 +177,13 @@ int main(int argc, char **argv)
   PetscCall(TestUnfolded("head", 900, "-start tutte"));
   PetscCall(TestUnfolded("starfish", 900, "-start tutte"));
   PetscCall(TestUnfolded("head", 900, "-start tutte -start_steps 2"));
+  PetscCall(TestHemisphereWeights("uniform"));
+  PetscCall(TestHemisphereWeights("harmonic"));
+  PetscCall(TestHemisphereWeights("mean-value"));
+  PetscCall(TestHemisphereWeights("semi-cotangent"));
   PetscCall(TestRanks("-start gauss"));
   PetscCall(TestRanks("-start tutte"));
+  PetscCall(TestRanks("-start tutte -start_weights mean-value"));
   PetscCall(TestCentered("-start tutte -start_center"));
   PetscCall(TestCentered("-start linear -start_center"));
   PetscCall(TestFixedPointEnds());
