@@ -14,11 +14,6 @@ PetscBool EqmIsGeometryImage(const char *file)
   return (PetscBool)(EqmHasSuffix(file, ".png") || EqmIsTiff(file));
 }
 
-PetscBool EqmIsTiff(const char *file)
-{
-  return (PetscBool)(EqmHasSuffix(file, ".tif") || EqmHasSuffix(file, ".tiff"));
-}
-
 PetscErrorCode EqmGeometryImageCheck(MPI_Comm comm, const char *file)
 {
   const char *const missing = EqmPixelsMissing(file);

@@ -1,6 +1,12 @@
 /* PNG by libpng, TIFF by libtiff. */
 #include "resample/pixels.h"
+#include "store/store.h"
 #include <math.h>
+
+PetscBool EqmIsTiff(const char *file)
+{
+  return (PetscBool)(EqmHasSuffix(file, ".tif") || EqmHasSuffix(file, ".tiff"));
+}
 
 const char *EqmPixelsMissing(const char *file)
 {
