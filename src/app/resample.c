@@ -17,7 +17,8 @@ typedef struct {
 static const char manual[] =
     "\n"
     "usage: equimap resample RESULT.h5 -grid N -o OUT, or equimap resample MESH MAP -grid N -o OUT\n"
-    "The map is one to the disk, the square, the sphere or the ball. Fields of the mesh are carried along, and\n"
+    "The map is one to the disk, the square, the sphere, the ball or the cube. Fields of the mesh are carried along, "
+    "and\n"
     "`target` is where each new vertex lies in the target.\n";
 
 static PetscErrorCode ReadOptions(ResampleOptions *options)
@@ -28,10 +29,12 @@ static PetscErrorCode ReadOptions(ResampleOptions *options)
                                "where the new mesh goes: any mesh format, and for the square .png or .tif, a geometry "
                                "image; several with commas",
                                NULL, "", options->output, sizeof(options->output), &options->has_output));
-  PetscCall(PetscOptionsInt("-grid",
-                            "a regular mesh of the target: N x N vertices of the square, N rings of the disk, the "
-                            "icosahedron with its edges cut into N, N layers of the ball",
-                            NULL, options->grid, &options->grid, &options->has_grid));
+  PetscCall(PetscOptionsInt(
+      "-grid",
+      "a regular mesh of the target: N x N vertices of the square, N rings of the disk, the "
+      "icosahedron with its edges cut into N, N layers of the ball, 2 N + 1 vertices along each edge of the "
+      "cube",
+      NULL, options->grid, &options->grid, &options->has_grid));
   PetscCall(PetscOptionsString("-onto",
                                "in place of -grid the connectivity of this mesh: a result of the same target, or a "
                                "mesh that lies in the target (of any size)",

@@ -204,3 +204,12 @@ const char *EqmDomainShapeName(EqmDomainShape shape)
 
   return name[shape];
 }
+
+const char *EqmDomainShapeTarget(EqmDomainShape shape)
+{
+  static const char *const target[] = {
+      [EQM_FILLS_DISK] = "disk", [EQM_FILLS_SQUARE] = "square", [EQM_FILLS_SPHERE] = "sphere",
+      [EQM_FILLS_BALL] = "ball", [EQM_FILLS_CUBE] = "cube",     [EQM_FILLS_SOLID] = NULL};
+
+  return target[shape];
+}

@@ -26,5 +26,7 @@ PETSC_INTERN PetscErrorCode EqmImageRecognise(EqmMesh mesh, PetscInt dim, const 
                                               EqmImagePlacement *placement);
 PETSC_INTERN void EqmImageToUnit(EqmMesh mesh, PetscInt dim, const EqmImagePlacement *placement, PetscReal *x);
 PETSC_INTERN const char *EqmDomainShapeName(EqmDomainShape shape);
+/* The target whose unit domain has that shape; NULL: there is none. Not collective. */
+PETSC_INTERN const char *EqmDomainShapeTarget(EqmDomainShape shape);
 
 #endif

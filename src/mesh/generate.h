@@ -51,7 +51,8 @@ PETSC_INTERN PetscErrorCode EqmSoupFromLattice(MPI_Comm comm, const EqmLattice *
 
 /* EqmSoupGenerateTarget - a regular mesh of a unit target: of the square n x n vertices, row by row; of the disk n
    rings of 6, 12, 18, ... vertices; of the sphere the icosahedron with its edges cut into n; of the ball concentric
-   layers of tetrahedra, n from the centre to the boundary. The target's name is one of these four.
+   layers of tetrahedra, n from the centre to the boundary, of the cube the same. The target's name is one of these
+   five.
 
    Collective; the same on any number of ranks. Errors: EQM_ERR_USAGE (n out of range). */
 PETSC_INTERN PetscErrorCode EqmSoupGenerateTarget(MPI_Comm comm, const char *target, PetscInt n, EqmSoup *soup);

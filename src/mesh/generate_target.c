@@ -18,6 +18,12 @@ static void Keep(const EqmLatticePlan *plan, const PetscReal parameter[3], Petsc
   for (int k = 0; k < 3; k++) position[k] = parameter[k];
 }
 
+static void PlaceUnitCube(const EqmLatticePlan *plan, const PetscReal parameter[3], PetscReal position[3])
+{
+  (void)plan;
+  for (int k = 0; k < 3; k++) position[k] = .5 * (parameter[k] + 1.);
+}
+
 static void PlanSquare(PetscInt n, EqmLatticePlan *plan)
 {
   plan->cell_size = 3;
@@ -42,7 +48,7 @@ static void PlanSphere(PetscInt n, EqmLatticePlan *plan)
   plan->num_cells = 20 * n * n;
 }
 
-static void PlanBall(PetscInt n, EqmLatticePlan *plan)
+static void PlanSolid(PetscInt n, EqmLatticePlan *plan)
 {
   plan->cell_size = 4;
   plan->size[0] = 2 * n;
@@ -54,7 +60,8 @@ static const EqmTargetMesh meshes[] = {
     {"square", &EqmLatticeRectangle, Keep, 2, 2., 2, PlanSquare},
     {"disk", &EqmLatticeHexagon, Keep, 1, 6., 2, PlanDisk},
     {"sphere", &EqmLatticeIcosahedron, Keep, 1, 20., 2, PlanSphere},
-    {"ball", &EqmLatticeCube, EqmPlaceBall, 2, 48., 3, PlanBall},
+    {"ball", &EqmLatticeCube, EqmPlaceBall, 2, 48., 3, PlanSolid},
+    {"cube", &EqmLatticeCube, PlaceUnitCube, 2, 48., 3, PlanSolid},
 };
 
 PetscErrorCode EqmSoupGenerateTarget(MPI_Comm comm, const char *target, PetscInt n, EqmSoup *soup)

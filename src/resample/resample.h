@@ -14,7 +14,7 @@ typedef struct {
   PetscInt
       *parent;  /* per cell of the slab of `mapped` the cell of `given`, -1: it was added; NULL where they are one */
   EqmMesh mesh; /* of `mapped` */
-  const char *target; /* "disk", "square", "sphere", "ball" */
+  const char *target; /* as of EqmDomainShapeTarget */
   PetscInt dim;
   EqmImageKind kind;
   PetscReal *x; /* images of its local vertices, in the unit target, no cell turned over for the most part */

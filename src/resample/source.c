@@ -111,9 +111,11 @@ static PetscErrorCode ToTarget(EqmMesh mesh, PetscInt dim, const char *file, Eqm
   PetscFunctionBegin;
   PetscCall(EqmImageRecognise(mesh, dim, x, &placement));
   *shape = placement.shape;
-  if (*shape == EQM_FILLS_PLANE || *shape == EQM_FILLS_SPACE || *shape == EQM_FILLS_SOLID)
+  if (!EqmDomainShapeTarget(*shape))
     EqmFail(mesh->comm, EQM_ERR_USAGE,
-            "%s: its image fills no target (it is %s); wanted is a map to the disk, the square, the sphere or the ball",
+            "%s: its image fills no target (it is %s); wanted is a map to the disk, the square, the sphere, the ball "
+            "or the "
+            "cube",
             file, EqmDomainShapeName(*shape));
   EqmImageToUnit(mesh, dim, &placement, x);
   PetscFunctionReturn(0);
@@ -146,7 +148,6 @@ static PetscErrorCode TurnOver(EqmResampleSource *source)
 PetscErrorCode EqmResampleSourceRead(MPI_Comm comm, const char *file, const char *map_file, EqmLedger ledger,
                                      EqmResampleSource *source)
 {
-  static const char *const target[] = {"disk", "square", NULL, "sphere", NULL, "ball", NULL};
   PetscReal *coordinates = NULL;
   EqmDomainShape shape;
 
@@ -162,10 +163,10 @@ PetscErrorCode EqmResampleSourceRead(MPI_Comm comm, const char *file, const char
   PetscCall(EqmMeshVerticesFromInput(source->mesh, source->mapped, source->dim, coordinates, source->x));
   PetscCall(PetscFree(coordinates));
   PetscCall(ToTarget(source->mesh, source->dim, map_file ? map_file : file, &shape, source->x));
-  source->target = target[shape];
-  source->kind = shape == EQM_FILLS_SPHERE ? EQM_IMAGE_SPHERE
-                 : shape == EQM_FILLS_BALL ? EQM_IMAGE_SPACE
-                                           : EQM_IMAGE_PLANE;
+  source->target = EqmDomainShapeTarget(shape);
+  source->kind = shape == EQM_FILLS_SPHERE      ? EQM_IMAGE_SPHERE
+                 : source->mesh->cell_size == 4 ? EQM_IMAGE_SPACE
+                                                : EQM_IMAGE_PLANE;
   PetscCall(TurnOver(source));
   PetscFunctionReturn(0);
 }
@@ -215,10 +216,7 @@ static PetscErrorCode ReadImages(EqmSoup soup, const char *file, PetscInt *dim, 
 PetscErrorCode EqmResamplePlaces(const EqmResampleSource *source, const char *file, EqmLedger ledger, EqmSoup *soup,
                                  PetscReal **place)
 {
-  static const EqmDomainShape shapes[] = {EQM_FILLS_DISK, EQM_FILLS_SQUARE, EQM_FILLS_SPHERE, EQM_FILLS_BALL};
-  static const char *const targets[] = {"disk", "square", "sphere", "ball"};
   EqmDomainShape shape = EQM_FILLS_SPACE;
-  PetscBool same = PETSC_FALSE;
   PetscReal *x;
   PetscInt dim;
   EqmMesh mesh;
@@ -231,8 +229,8 @@ PetscErrorCode EqmResamplePlaces(const EqmResampleSource *source, const char *fi
   PetscCall(PetscMalloc1(dim * mesh->num_local, &x));
   PetscCall(EqmMeshVerticesFromInput(mesh, *soup, dim, *place, x));
   PetscCall(ToTarget(mesh, dim, file, &shape, x));
-  for (int k = 0; k < 4; k++) same = (PetscBool)(same || (shapes[k] == shape && !strcmp(targets[k], source->target)));
-  if (!same || dim != source->dim || mesh->cell_size != source->mesh->cell_size)
+  if (strcmp(EqmDomainShapeTarget(shape), source->target) || dim != source->dim ||
+      mesh->cell_size != source->mesh->cell_size)
     EqmFail((*soup)->comm, EQM_ERR_USAGE, "-onto %s: it lies in another target (%s) than the map of %s (%s)", file,
             EqmDomainShapeName(shape), source->given->file, source->target);
   PetscCall(EqmMeshVerticesToInput(mesh, *soup, dim, x, *place));

@@ -146,13 +146,16 @@ def check_closed(program):
     assert abs(read("two.h5")[0] - read("ico.h5")[0]).max() < 1e-6
 
     program.succeed("generate", "blob", "-n", "600", "-o", "blob.msh")
-    program.succeed("ball", "blob.msh", "-o", "ball.h5", "-quiet", "-max_it", "30", codes=(0, 4))
-    program.succeed("resample", "ball.h5", "-grid", "3", "-o", "layers.h5")
-    vertices, solid, fields = read("layers.h5")
-    corner = fields["vertex/target"][solid]
-    assert len(vertices) == 343 and (numpy.linalg.det(corner[:, 1:] - corner[:, :1]) > 0).all()
-    corner = vertices[solid]
-    assert (numpy.linalg.det(corner[:, 1:] - corner[:, :1]) > 0).mean() > 0.98
+    for target in ("ball", "cube"):
+        program.succeed(target, "blob.msh", "-o", "solid.h5", "-quiet", "-max_it", "30", codes=(0, 4))
+        program.succeed("resample", "solid.h5", "-grid", "3", "-o", "layers.h5")
+        vertices, solid, fields = read("layers.h5")
+        places = fields["vertex/target"]
+        corner = places[solid]
+        assert len(vertices) == 343 and (numpy.linalg.det(corner[:, 1:] - corner[:, :1]) > 0).all()
+        corner = vertices[solid]
+        assert (numpy.linalg.det(corner[:, 1:] - corner[:, :1]) > 0).mean() > 0.98
+        assert target == "ball" or abs(places * 6 - numpy.rint(places * 6)).max() < 1e-14
 
 
 def check_refusals(program):
