@@ -27,8 +27,8 @@ PETSC_EXTERN PetscErrorCode EqmMeshGetVertexInput(EqmMesh mesh, const PetscInt *
 
    Collective. soup - must have passed EqmSoupDiagnose for a target (manifold, oriented or, for solids, any signs of
    volume); it may be destroyed afterwards. ledger - counts the work and must outlive the mesh. mesh - to be freed with
-   EqmMeshDestroy. Option: -partition metis|slab. Errors: EQM_ERR_USAGE where the graph is too large for METIS on one
-   rank. */
+   EqmMeshDestroy. Option: -partition auto|metis|curve|slab|ptscotch. Errors: EQM_ERR_USAGE where METIS is asked
+   for and the graph is too large for one rank. */
 PETSC_EXTERN PetscErrorCode EqmMeshCreate(EqmSoup soup, EqmLedger ledger, EqmMesh *mesh);
 /* EqmMeshHelpOptions - list the options of EqmMeshCreate, with help, for -help.
 

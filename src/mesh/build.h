@@ -21,6 +21,7 @@ PETSC_INTERN PetscErrorCode EqmGraphOfCells(PetscInt num_rows, PetscInt cell_siz
                                             const PetscInt *cells, EqmGraph *graph);
 PETSC_INTERN PetscErrorCode EqmGraphReset(EqmGraph *graph);
 PETSC_INTERN PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *owner_of_slab);
+PETSC_INTERN PetscErrorCode EqmPartitionAlongCurve(EqmSoup soup, PetscInt *owner_of_slab);
 PETSC_INTERN PetscErrorCode EqmOrderCuthillMcKee(const EqmGraph *graph, PetscInt *new_number);
 PETSC_INTERN PetscErrorCode EqmRunMetis(PetscInt num_parts, PetscInt n, PetscInt *start, PetscInt *neighbor,
                                         PetscInt *part);

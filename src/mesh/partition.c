@@ -1,7 +1,11 @@
-/* Which rank owns which vertex: METIS on the vertex graph. */
+/* Which rank owns which vertex: METIS on the vertex graph where that fits one rank, ranges along a curve where not. */
 #include "mesh/build.h"
 #include "mesh/soup_private.h"
 #include "mesh/diagnose.h"
+#include <petscmat.h>
+
+/* Larger graphs do not visit one rank unless the user wants it. */
+static const PetscInt most_on_root = 1000000;
 
 /* The graph rows of this rank's slab of vertices, neighbours in input numbering. */
 static PetscErrorCode SlabGraph(EqmSoup soup, EqmGraph *graph)
@@ -40,7 +44,7 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
     edge_count[p] = counts[p][1];
     num_edges += edge_count[p];
     if (num_edges > PETSC_MPI_INT_MAX) {
-      EqmFail(soup->comm, EQM_ERR_USAGE, "the mesh's graph is too large for METIS on one rank: take -partition slab");
+      EqmFail(soup->comm, EQM_ERR_USAGE, "the mesh's graph is too large for METIS on one rank: take -partition curve");
     }
     row_start[p + 1] = row_start[p] + row_count[p];
     edge_start[p + 1] = edge_start[p] + edge_count[p];
@@ -70,25 +74,75 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
   PetscFunctionReturn(0);
 }
 
-enum { PARTITION_METIS, PARTITION_SLAB, NUM_PARTITIONS };
-static const char *const partitions[NUM_PARTITIONS] = {"metis", "slab"};
+/* By all ranks, through PETSc, which takes the graph's arrays. */
+static PetscErrorCode PartitionOnAll(EqmSoup soup, EqmGraph *graph, const char *type, PetscInt *owner_of_slab)
+{
+  MatPartitioning partitioning;
+  const PetscInt *owner;
+  Mat adjacency;
+  IS owners;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreateMPIAdj(soup->comm, graph->num_rows, soup->num_vertices, graph->start, graph->neighbor, NULL,
+                            &adjacency));
+  graph->start = graph->neighbor = NULL;
+  PetscCall(MatPartitioningCreate(soup->comm, &partitioning));
+  PetscCall(MatPartitioningSetAdjacency(partitioning, adjacency));
+  PetscCall(MatPartitioningSetType(partitioning, type));
+  PetscCall(MatPartitioningSetFromOptions(partitioning));
+  PetscCall(MatPartitioningApply(partitioning, &owners));
+  PetscCall(ISGetIndices(owners, &owner));
+  PetscCall(PetscArraycpy(owner_of_slab, owner, graph->num_rows));
+  PetscCall(ISRestoreIndices(owners, &owner));
+  PetscCall(ISDestroy(&owners));
+  PetscCall(MatPartitioningDestroy(&partitioning));
+  PetscCall(MatDestroy(&adjacency));
+  PetscFunctionReturn(0);
+}
+
+/* What works on all ranks is what PETSc was built with. */
+enum {
+  PARTITION_AUTO,
+  PARTITION_METIS,
+  PARTITION_CURVE,
+  PARTITION_SLAB,
+#if defined(PETSC_HAVE_PTSCOTCH)
+  PARTITION_PTSCOTCH,
+#endif
+#if defined(PETSC_HAVE_PARMETIS)
+  PARTITION_PARMETIS,
+#endif
+  NUM_PARTITIONS
+};
+static const char *const partitions[NUM_PARTITIONS] = {
+    "auto",     "metis", "curve", "slab",
+#if defined(PETSC_HAVE_PTSCOTCH)
+    "ptscotch",
+#endif
+#if defined(PETSC_HAVE_PARMETIS)
+    "parmetis",
+#endif
+};
 
 PetscErrorCode EqmMeshHelpOptions(PetscOptionItems *PetscOptionsObject)
 {
-  PetscInt kind = PARTITION_METIS;
+  PetscInt kind = PARTITION_AUTO;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsEList("-partition",
-                              "which rank gets which vertices: metis cuts few edges and takes the mesh's graph to one "
-                              "rank for a moment, slab takes the vertices as the file has them",
-                              "EqmMeshCreate", partitions, NUM_PARTITIONS, partitions[kind], &kind, NULL));
+  PetscCall(PetscOptionsEList(
+      "-partition",
+      "which rank gets which vertices: metis cuts few edges and takes the mesh's graph to one rank for a moment, "
+      "curve takes ranges along Hilbert's curve through space, slab the vertices as the file has them, ptscotch and "
+      "parmetis, where PETSc has them, cut the graph on all ranks, not always in the same way; auto: metis up to a "
+      "million vertices, curve beyond",
+      "EqmMeshCreate", partitions, NUM_PARTITIONS, partitions[kind], &kind, NULL));
   PetscFunctionReturn(0);
 }
 
 /* The owning rank of every vertex of this rank's slab. Option: -partition. Collective. */
 PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *owner_of_slab)
 {
-  PetscInt kind = PARTITION_METIS;
+  PetscInt kind = PARTITION_AUTO;
   PetscMPIInt rank, size;
   EqmGraph graph;
 
@@ -96,13 +150,21 @@ PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *ow
   PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
   PetscCallMPI(MPI_Comm_size(soup->comm, &size));
   PetscCall(PetscOptionsGetEList(NULL, NULL, "-partition", partitions, NUM_PARTITIONS, &kind, NULL));
+  if (kind == PARTITION_AUTO) kind = soup->num_vertices > most_on_root ? PARTITION_CURVE : PARTITION_METIS;
   if (size == 1 || kind == PARTITION_SLAB) {
     for (PetscInt i = 0; i < soup->vertex_end - soup->vertex_start; i++) owner_of_slab[i] = rank;
     PetscFunctionReturn(0);
   }
+  if (kind == PARTITION_CURVE) {
+    PetscCall(EqmPartitionAlongCurve(soup, owner_of_slab));
+    PetscFunctionReturn(0);
+  }
   PetscCall(SlabGraph(soup, &graph));
   PetscCall(EqmEventBegin(ledger, EQM_EVENT_PARTITION));
-  PetscCall(PartitionOnRoot(soup, &graph, owner_of_slab));
+  if (kind == PARTITION_METIS)
+    PetscCall(PartitionOnRoot(soup, &graph, owner_of_slab));
+  else
+    PetscCall(PartitionOnAll(soup, &graph, partitions[kind], owner_of_slab));
   PetscCall(EqmEventEnd(ledger, EQM_EVENT_PARTITION));
   PetscCall(EqmGraphReset(&graph));
   PetscFunctionReturn(0);

@@ -2,6 +2,7 @@
  */
 #include "support/testing.h"
 #include "mesh/gather.h"
+#include "mesh/build.h"
 #include "mesh/mesh_private.h"
 
 /* Vertex numbers of the input for every local vertex, ghosts from their owners. */
@@ -233,6 +234,43 @@ static PetscErrorCode TestShape(const char *shape, PetscInt n, const char *parti
   PetscFunctionReturn(0);
 }
 
+/* Ranges along the curve: as many vertices on each rank, and the same ranks for the same vertices however the file
+   numbers them: here the other way round on each rank. */
+static PetscErrorCode TestCurve(void)
+{
+  EqmSoup soup, turned;
+  PetscMPIInt size;
+  PetscInt *owner, *turned_owner, n, start, count[2] = {0, 0}, most;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "hills", 700, 5, &soup));
+  PetscCall(EqmSoupCopy(soup, &turned));
+  n = soup->vertex_end - soup->vertex_start;
+  start = soup->vertex_start;
+  for (PetscInt v = 0; v < n; v++) { /* points alone count: turn their order round */
+    for (PetscInt k = 0; k < 3; k++) turned->vertices[3 * v + k] = soup->vertices[3 * (n - 1 - v) + k];
+  }
+  PetscCall(PetscMalloc2(n, &owner, n, &turned_owner));
+  PetscCall(EqmPartitionAlongCurve(soup, owner));
+  PetscCall(EqmPartitionAlongCurve(turned, turned_owner));
+  for (PetscInt v = 0; v < n; v++) {
+    CHECK(owner[v] == turned_owner[n - 1 - v], "vertex %d goes to rank %d, or %d", (int)(start + v), (int)owner[v],
+          (int)turned_owner[n - 1 - v]);
+    CHECK(owner[v] >= 0 && owner[v] < size, "vertex %d goes to rank %d", (int)(start + v), (int)owner[v]);
+    count[0] += owner[v] == 0;
+    count[1] += owner[v] == size - 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  most = soup->num_vertices / size + 1;
+  CHECK(count[0] >= most - 1 && count[0] <= most && count[1] >= most - 1 && count[1] <= most,
+        "the first rank gets %d vertices, the last %d, of %d", (int)count[0], (int)count[1], (int)soup->num_vertices);
+  PetscCall(PetscFree2(owner, turned_owner));
+  PetscCall(EqmSoupDestroy(&soup));
+  PetscCall(EqmSoupDestroy(&turned));
+  PetscFunctionReturn(0);
+}
+
 /* Three triangles round one vertex: on more than four ranks some have nothing. */
 static PetscErrorCode MakeFan(MPI_Comm comm, EqmSoup *soup)
 {
@@ -317,6 +355,11 @@ int main(int argc, char **argv)
   PetscCall(TestShape("cap", 700, "-partition metis", One));
   PetscCall(TestShape("hills", 700, "-partition metis", Uneven));
   PetscCall(TestShape("hills", 700, "-partition slab", Uneven));
+  PetscCall(TestShape("hills", 700, "-partition curve", Uneven));
+#if defined(PETSC_HAVE_PTSCOTCH)
+  PetscCall(TestShape("hills", 700, "-partition ptscotch", Uneven));
+#endif
+  PetscCall(TestCurve());
   PetscCall(TestShape("patch", 1, "-partition metis", One));
   PetscCall(TestFan());
   PetscCall(TestRefinedFan());
