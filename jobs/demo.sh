@@ -65,13 +65,19 @@ python3 - "$demo/summary.json" <<'END'
 import json, sys
 
 summary = json.load(open(sys.argv[1]))
+ratio = summary["ratio_weighted"]
+slivers = []
+if ratio["outliers"]:
+    slivers = [("slivers", f"{ratio['outliers']:,} triangles, {100 * ratio['outlier_share']:.2g} % of the area, are off by more than 10 SD"),
+               ("SD over triangles", f"{summary['ratio']['sd']:.4g}; {ratio['cell_sd_without_outliers']:.4g} without these")]
 rows = [
     ("vertices", f"{summary['mesh']['vertices']:,}"),
     ("triangles", f"{summary['mesh']['cells']:,}"),
     ("method", summary["method"]),
     ("status", summary["status"]),
     ("energy E", f"{summary['energy']['initial']:.4g} -> {summary['energy']['final']:.4g}"),
-    ("SD of area ratio", f"{summary['ratio']['sd']:.4g}"),
+    ("SD of area ratio", f"{ratio['sd']:.4g} by area; 90 % of the area from {ratio['p05']:.6g} to {ratio['p95']:.6g}"),
+    *slivers,
     ("folds", f"{summary['folds']}"),
     ("iterations", f"{summary['iterations']}"),
     ("seconds", f"{summary['seconds']['total']:.2f}"),

@@ -67,7 +67,8 @@ void EqmDrawColorBar(cairo_t *cairo, const EqmPage *page, EqmBox box)
   char within[96] = "", right[160], number[48];
 
   for (PetscInt k = 0; k < page->num; k++) folds += page->results[k].folds;
-  if (farthest < fmin(0.01, page->scale.limit - 1.0)) { /* a map that is better than the smallest scale shows */
+  if (!page->start &&
+      farthest < fmin(0.01, page->scale.limit - 1.0)) { /* a map that is better than the smallest scale shows */
     EqmNumberText(RoundUp(farthest), number, sizeof(number));
     (void)snprintf(within, sizeof(within), "; all within %s of 1", number);
   }

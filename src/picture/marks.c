@@ -37,12 +37,16 @@ static PetscBool IsSeen(const EqmRaster *raster, const double at[3])
   return (PetscBool)(raster->depth[(size_t)y * (size_t)raster->size + (size_t)x] < at[2] + 0.01 * raster->size);
 }
 
-void EqmDrawMarks(cairo_t *cairo, const EqmView *view, const EqmRaster *raster, EqmBox box)
+/* A marked cell that is seen: where its ring is, and its number. */
+typedef struct {
+  double x, y, label_x, label_y;
+  PetscInt cell;
+} Mark;
+
+static int CollectMarks(const EqmView *view, const EqmRaster *raster, EqmBox box, Mark marks[EQM_NUM_MARKS])
 {
   const EqmResult *const result = view->result;
-  double place[EQM_NUM_MARKS][2];
-  PetscInt cell[EQM_NUM_MARKS];
-  int drawn = 0;
+  int count = 0;
 
   for (PetscInt m = 0; m < result->num_marks; m++) {
     const PetscInt *const v = result->cells + result->cell_size * result->mark[m];
@@ -52,19 +56,41 @@ void EqmDrawMarks(cairo_t *cairo, const EqmView *view, const EqmRaster *raster, 
     EqmCameraProject(&view->camera, raster->size, centroid, at);
     if (!IsSeen(raster, at)) continue;
     const double x = box.x + at[0] * box.width / raster->size, y = box.y + at[1] * box.height / raster->size;
-    DrawRing(cairo, x, y);
-    cell[drawn] = result->mark[m];
-    place[drawn][0] = x;
-    place[drawn][1] = y;
-    for (int k = 0; k < drawn; k++) { /* numbers do not hide each other */
-      if (fabs(place[k][0] - x) < 45 && fabs(place[k][1] - place[drawn][1]) < 13.5) {
-        place[drawn][1] = place[k][1] + 14;
-        k = -1;
-      }
-    }
-    drawn++;
+    marks[count++] = (Mark){x, y, x, y, result->mark[m]};
   }
-  for (int k = 0; k < drawn; k++) DrawLabel(cairo, place[k][0], place[k][1], cell[k]); /* over all the rings */
+  return count;
+}
+
+/* Numbers hide neither each other nor rings close by: each stands to the right of these, below the ones before. */
+static void SpreadLabels(int count, Mark marks[])
+{
+  const double width = 45.0, height = 14.0;
+
+  for (int k = 0; k < count; k++) {
+    Mark *const mark = &marks[k];
+    for (int j = 0; j < count; j++) {
+      const double right = marks[j].x - mark->label_x;
+      if (right <= 0.0 || right >= width || fabs(marks[j].y - mark->y) >= height) continue;
+      mark->label_x = marks[j].x;
+      j = -1; /* from the beginning, at the new place */
+    }
+    for (int j = 0; j < k; j++) {
+      if (fabs(marks[j].label_x - mark->label_x) >= width || fabs(marks[j].label_y - mark->label_y) >= height - 0.5)
+        continue;
+      mark->label_y = marks[j].label_y + height;
+      j = -1;
+    }
+  }
+}
+
+void EqmDrawMarks(cairo_t *cairo, const EqmView *view, const EqmRaster *raster, EqmBox box)
+{
+  Mark marks[EQM_NUM_MARKS];
+  const int count = CollectMarks(view, raster, box, marks);
+
+  SpreadLabels(count, marks);
+  for (int k = 0; k < count; k++) DrawRing(cairo, marks[k].x, marks[k].y);
+  for (int k = 0; k < count; k++) DrawLabel(cairo, marks[k].label_x, marks[k].label_y, marks[k].cell);
 }
 
 /* Where a point of the scene is in the box; false if something is in front of it. */
