@@ -218,9 +218,13 @@ def show(args, rows):
 
 
 def unfinished(args, states):
-    """A line for each row that is not finished."""
+    """A line for each row that is not finished; one for those that have not begun."""
     for state in dict.fromkeys(state for _, state in states if state != "finished"):
-        for row in (row for row, other in states if other == state):
+        rows = [row for row, other in states if other == state]
+        if state == "to do":
+            yield f"  to do: {', '.join(str(row.number) for row in rows)}"
+            continue
+        for row in rows:
             words = {"failed": Store(args.results, row).complaint(), "no mesh": ", ".join(row.meshes)}
             word = words.get(state, "")
             yield f"  {state}: row {row.number}, {row.name}" + (f": {word}" if word else "")
