@@ -235,7 +235,7 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(TakeEigenvalues(options, ledger, run.solver, run.map));
   PetscCall(Write(options, ledger, run.map, run.map));
   PetscCall(EqmMapGetStatus(run.map, status, NULL));
-  PetscCall(EqmMapPrintResult(options->input.quiet,
+  PetscCall(EqmMapPrintResult((PetscBool)(options->input.quiet || whole.mapped),
                               *status == EQM_STATUS_STOPPED ? options->checkpoint : options->output, run.map,
                               run.map == run.found ? NULL : run.found));
   PetscCall(EqmMapRunDestroy(&run));
@@ -259,7 +259,7 @@ static PetscErrorCode SolvePieces(const EqmCommandLine *line, const MapOptions *
   texture = pieces.map;
   if (options->has_uv) PetscCall(EqmPiecesCharts(&pieces, &texture));
   PetscCall(Write(options, ledger, pieces.map, texture));
-  PetscCall(EqmMapPrintResult(options->input.quiet, options->output, pieces.map, NULL));
+  PetscCall(EqmMapPrintResult(PETSC_TRUE, options->output, pieces.map, NULL));
   PetscCall(EqmMapGetStatus(pieces.map, status, NULL));
   if (texture != pieces.map) PetscCall(EqmMapDestroy(&texture));
   PetscCall(EqmPiecesDestroy(&pieces));

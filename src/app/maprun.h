@@ -24,8 +24,9 @@ PETSC_INTERN PetscErrorCode EqmMapRunWithoutSplits(const char *command, const Eq
                                                    const EqmIntake *input, const EqmStopFile *stop_file,
                                                    EqmLedger ledger, EqmMapRun *run, EqmIntake *whole);
 /* Print the result table: the map of the file's mesh, and that of the prepared mesh if there is one (else NULL).
-   `written`: the names of the files. Collective. */
-PETSC_INTERN PetscErrorCode EqmMapPrintResult(PetscBool quiet, const char *written, EqmMap map, EqmMap prepared);
+   `ended`: say how the run came to its end, which the lines before have not said, or of another run. `written`: the
+   names of the files. Collective. */
+PETSC_INTERN PetscErrorCode EqmMapPrintResult(PetscBool ended, const char *written, EqmMap map, EqmMap prepared);
 /* Collective. */
 PETSC_INTERN PetscErrorCode EqmMapRunDestroy(EqmMapRun *run);
 

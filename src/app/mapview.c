@@ -43,7 +43,7 @@ static PetscErrorCode PrintPrepared(MPI_Comm comm, EqmMap prepared)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmMapPrintResult(PetscBool quiet, const char *written, EqmMap map, EqmMap prepared)
+PetscErrorCode EqmMapPrintResult(PetscBool ended, const char *written, EqmMap map, EqmMap prepared)
 {
   const EqmDistortion *d;
   const EqmMapCost *cost;
@@ -67,7 +67,7 @@ PetscErrorCode EqmMapPrintResult(PetscBool quiet, const char *written, EqmMap ma
                         " rank%s x %" PetscInt_FMT " thread%s\n",
                         soup->file, soup->num_vertices, soup->num_cells, cost->ranks, cost->ranks == 1 ? "" : "s",
                         cost->threads, cost->threads == 1 ? "" : "s"));
-  if (quiet || (prepared && status == EQM_STATUS_FOLDS))
+  if (ended || (prepared && status == EQM_STATUS_FOLDS))
     PetscCall(PetscPrintf(comm, "  %s: %s\n", EqmStatusName(status), message));
   PetscCall(PetscPrintf(comm, "  energy        %.6e   (start %.3e)\n", (double) final, (double)initial));
   PetscCall(EqmMapViewRatios(map));

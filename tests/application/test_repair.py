@@ -96,6 +96,8 @@ def main(program):
         with open("run.json") as file:
             summary = json.load(file)
         assert summary["mesh"]["vertices"] == len(points) and summary["mesh"]["cells"] == len(cells)
+        assert "once more without splits" in done.stdout  # what the last run came to need not be what the user has
+        assert f"  {summary['status']}: {summary['message']}\n" in done.stdout[done.stdout.index("\nears.obj, "):], done.stdout
         assert summary["folds"] == folds and summary["repair"]["cells_split"] == (8 if split else 0)
     assert (flat < 1e-14).all(), flat
 
