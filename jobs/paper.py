@@ -150,7 +150,7 @@ def collect(args, groups):
         if part:
             write_table([line for _, _, lines in part for line in lines], args.results / f"{name}.csv")
     missing = [(row, state) for _, states in groups for row, state in states if state != "finished"]
-    for path in paper_page.write(args.paper, args.results, papers, others, missing):
+    for path in paper_page.write(args.paper, args.results, papers, others, missing, args.program):
         print(f"paper: {path}")
 
 

@@ -1,5 +1,6 @@
 """The figures of the papers, redrawn from our runs. Used by paper_page.py; needs Matplotlib, NumPy and h5py."""
 import dataclasses
+import subprocess
 
 import h5py
 import matplotlib
@@ -14,12 +15,12 @@ from sweep_table import Store, find_preset, published  # noqa: E402
 
 # Which of a paper's figures each of ours redraws.
 REDRAWN = {
-    "000": {"histogram": "Figure 3", "bars": "Figure 4", "time": "Figure 5"},
-    "001": {"energy": "Figures 5 to 7"},
-    "002": {"energy": "Figure 5", "histogram": "Figure 6"},
-    "003": {"histogram": "Figure 4", "energy": "Figures 5 and 6 (a)", "time": "Figure 6 (b)", "bars": "Figure 7",
+    "000": {"pictures": "Figure 2", "histogram": "Figure 3", "bars": "Figure 4", "time": "Figure 5"},
+    "001": {"pictures": "Figure 4", "energy": "Figures 5 to 7"},
+    "002": {"pictures": "Figures 2 and 4", "energy": "Figure 5", "histogram": "Figure 6"},
+    "003": {"pictures": "Figure 3", "histogram": "Figure 4", "energy": "Figures 5 and 6 (a)", "time": "Figure 6 (b)", "bars": "Figure 7",
             "folds": "Figure 8"},
-    "004": {"histogram": "Figure 4", "energy": "Figures 5 and 6", "steps": "Figures 7 and 8"},
+    "004": {"pictures": "Figures 1 to 3", "quasi": "Figure 3", "histogram": "Figure 4", "energy": "Figures 5 and 6", "steps": "Figures 7 and 8"},
 }
 WIDTH = 4.2
 ACROSS = 3
@@ -29,6 +30,7 @@ ACROSS = 3
 class Curves(Run):
     """A run, with its cells."""
     result: object = None  # the path of its HDF5 file
+    program: object = None  # equimap, which draws reports; None: it is not there
 
     @property
     def word(self):
@@ -105,6 +107,39 @@ def histogram(paper, runs):
     return per_mesh(runs, panel)
 
 
+def quasi(paper, runs):
+    """Quasi-conformal distortion of conformal maps."""
+    def panel(axes, run, color):
+        values = run.dataset("cell/quasi_conformal")
+        if values is None:
+            return
+        low, high = 1., 1.5
+        counts, edges = numpy.histogram(numpy.clip(values, low, high), 60, (low, high))
+        axes.stairs(counts / len(values), edges, color=color, linewidth=1.3, label=run.word)
+        axes.set(xlabel="ratio of the singular values (the last bar: and more)", ylabel="share of the cells")
+
+    return per_mesh(runs, panel) if paper == "004" else None
+
+
+def pictures(_, runs):
+    """The report of the best run for each mesh, as the program draws it; None where it cannot."""
+    shown = []
+    for members in families(runs).values():
+        best = min(members, key=lambda run: (run.summary["folds"], run.summary["energy"]["final"]))
+        picture = best.result.with_name("report.png")
+        drawn = subprocess.run([best.program, "report", best.result, "-o", picture, "-width", "1400"],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False) if best.program else None
+        if drawn and drawn.returncode == 0:
+            shown.append(pyplot.imread(picture))
+    if not shown:
+        return None
+    figure, panels = pyplot.subplots(len(shown), 1, figsize=(11., 6.1 * len(shown)), squeeze=False, layout="constrained")
+    for axes, image in zip(panels.flat, shown):
+        axes.imshow(image)
+        axes.axis("off")
+    return figure
+
+
 def energy(_, runs):
     def panel(axes, run, color):
         axes.plot(*zip(*run.curve("iteration")), color=color, linewidth=1.4, label=run.word)
@@ -146,12 +181,14 @@ def bars(paper, runs):
     ends = [run for run in runs if run.row.paper == run.row.preset and run.paper.get(None)]
     if not ends or paper == "004":
         return None
-    spread = ("error_sd", "SD of |ratio - 1|") if paper == "003" else ("sd", "SD of the ratios")
-    figure, panels = grid(2, height=2.2 + .1 * len(ends))
-    for axes, (name, label) in zip(panels, (("energy", "energy"), spread)):
+    spread = ((("error_mean", "mean of |ratio - 1|"), ("error_sd", "SD of |ratio - 1|")) if paper == "003"
+              else (("sd", "SD of the ratios"),))
+    figure, panels = grid(1 + len(spread), height=2.2 + .1 * len(ends))
+    for axes, (name, label) in zip(panels, (("energy", "energy"), *spread)):
         for k, run in enumerate(ends):
-            sd = run.summary["ratio_error" if name == "error_sd" else "ratio"]["sd"]
-            axes.barh(k - .2, run.summary["energy"]["final"] if name == "energy" else sd, .38, color=COLORS[0])
+            figures = run.summary["ratio_error" if name.startswith("error") else "ratio"]
+            ours = run.summary["energy"]["final"] if name == "energy" else figures[name.rpartition("_")[2]]
+            axes.barh(k - .2, ours, .38, color=COLORS[0])
             theirs = run.paper[None].get(name) or (run.paper[None].get("sd_by_mean") if name == "sd" else None)
             if theirs:
                 axes.barh(k + .2, theirs, .38, color="0.75")
@@ -186,20 +223,21 @@ def time(_, runs):
 
 
 KINDS = {
-    "histogram": ("Histograms of the cells", histogram), "bars": ("Energies and standard deviations", bars),
+    "pictures": ("A mesh each and its map", pictures), "histogram": ("Histograms of the cells", histogram),
+    "quasi": ("Quasi-conformal distortion", quasi), "bars": ("Energies and standard deviations", bars),
     "energy": ("Energy over iterations", energy), "folds": ("Folds over iterations", folds),
     "gradient": ("Norm of the gradient", curve_of("gradient_norm", "norm of the gradient", True)),
     "steps": ("Step sizes", curve_of("step", "step", True)), "time": ("Seconds over vertices", time),
 }
 
 
-def draw(paper, parts):
+def draw(paper, parts, program):
     """(caption, figure) for every figure that has something to show."""
     runs = []
     for results, row, _ in parts:
         store = Store(results, row)
         runs.append(Curves(row, store.summary(), read_history(store), published(find_preset(row.paper)),
-                           store.folder / "result.h5"))
+                           store.folder / "result.h5", program))
     runs = [run for run in runs if run.history]
     for kind, (caption, make) in KINDS.items():
         figure = make(paper, runs) if runs else None

@@ -58,7 +58,10 @@ def rows_of(lines):
     table = []
     for fixed, ours, paper in lines:
         after = paper.get("iterations") if fixed["status"] == "on the way" else ours.get("iterations")
-        words = [fixed["name"], fixed["mesh"].rpartition("/")[2], f"{fixed['vertices']:,}", fixed["method"], written(after, "d")]
+        if after and paper.get("iterations", after) != after:
+            after = (after, paper["iterations"])
+        words = [fixed["name"], fixed["mesh"].rpartition("/")[2], f"{fixed['vertices']:,}", fixed["method"],
+                 f"{after[0]:.0f} (theirs {after[1]:.0f})" if isinstance(after, tuple) else written(after, "d")]
         cells = []
         for figure in columns:
             form = FIGURES[figure][1]
@@ -154,8 +157,8 @@ def pdf_page(pyplot, name, paper, contents, missing):
             pyplot.close(page)
 
 
-def write(paper, folder, papers, others, missing):
-    """Write paper.html and paper.pdf; their paths."""
+def write(paper, folder, papers, others, missing, program):
+    """Write paper.html and paper.pdf, with pictures drawn by `program`, unless that is None; their paths."""
     try:
         import paper_figures
     except ImportError as absent:
@@ -163,7 +166,7 @@ def write(paper, folder, papers, others, missing):
                          "/usr/bin/python3)") from absent
     from matplotlib import pyplot
 
-    contents = [(heading, words, lines, list(paper_figures.draw(paper, runs)))
+    contents = [(heading, words, lines, list(paper_figures.draw(paper, runs, program)))
                 for heading, words, lines, runs in parts(papers, others)]
     pages = folder / "paper.html", folder / "paper.pdf"
     pages[0].write_text(html_page(paper, contents, missing), encoding="utf-8")
