@@ -121,6 +121,8 @@ static PetscErrorCode TryWhole(const char *command, const EqmIntakeOptions *opti
     const EqmMapRun other = *run;
     *run = next;
     next = other;
+  } else if (!error && !options->quiet) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "this is no better for the file's own cells: the map before is kept\n"));
   }
   PetscCall(EqmMapRunDestroy(&next));
   PetscFunctionReturn(0);

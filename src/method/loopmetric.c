@@ -6,15 +6,12 @@
        S^-1 = sum over the nodes of 2/pi step e^u (A + e^{2u} M)^-1:
 
    a dozen cyclic tridiagonal systems, whatever the spacing of the vertices. A shift of M/2 makes A definite. Rank 0
-   solves them for the whole loop, as it is rank 0 that orders it: the square root of the mesh's size, in work and in
-   memory. */
+   solves them for the whole loop. */
 #include "method/loopmetric.h"
-#include "mesh/mesh_private.h"
-#include "base/rows.h"
 
 struct _p_EqmLoopMetric {
-  PetscSF gather;              /* roots: on rank 0 the vertices in the loop's order; leaves: owned boundary vertices */
-  PetscInt count;              /* vertices of the loop on rank 0, nothing elsewhere */
+  EqmLoop loop;
+  PetscInt count;              /* the loop's */
   PetscReal *stiffness, *mass; /* 1/gap to the next vertex; half of both gaps */
   PetscReal first, last;       /* range of the nodes u */
   PetscReal *rhs, *sum, *diagonal, *solution, *coupling;
@@ -22,54 +19,41 @@ struct _p_EqmLoopMetric {
 
 static const PetscReal node_step = 1., node_margin = 4.5, shift = .5;
 
-/* Gaps between neighbours on the loop, on rank 0, and the range of nodes that covers the spectrum. */
-static PetscErrorCode Discretise(EqmLoopMetric metric, const PetscReal *point)
+/* From the gaps between neighbours, on rank 0: the matrices, and the range of nodes that covers the spectrum. */
+static PetscErrorCode Discretise(EqmLoopMetric metric, const PetscReal *gap)
 {
   const PetscInt n = metric->count;
   PetscReal smallest = 2. * PETSC_PI;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < n; k++) {
-    const PetscReal *const p = point + 2 * k, *const q = point + 2 * ((k + 1) % n);
-    const PetscReal gap = PetscAtan2Real(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]);
-    PetscCheck(gap > 0., PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "the boundary is not in its order");
-    metric->stiffness[k] = 1. / gap;
-    metric->mass[k] += .5 * gap;
-    metric->mass[(k + 1) % n] += .5 * gap;
-    smallest = PetscMin(smallest, gap);
+    PetscCheck(gap[k] > 0., PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "the boundary is not in its order");
+    metric->stiffness[k] = 1. / gap[k];
+    metric->mass[k] += .5 * gap[k];
+    metric->mass[(k + 1) % n] += .5 * gap[k];
+    smallest = PetscMin(smallest, gap[k]);
   }
   metric->first = PetscLogReal(shift) - node_margin;
   metric->last = PetscLogReal(2. / smallest) + node_margin; /* no eigenvalue of M^-1 A is above (2/gap)^2 */
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmLoopMetricCreate(EqmMesh mesh, PetscInt num, const PetscInt *vertex, const PetscReal *x,
-                                   EqmLoopMetric *out)
+PetscErrorCode EqmLoopMetricCreate(EqmLoop loop, const PetscReal *x, EqmLoopMetric *out)
 {
   EqmLoopMetric metric;
-  PetscInt *place;
-  PetscReal *arc_length, *mine, *point;
-  PetscSFNode *root;
+  PetscReal *point, *gap;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&metric));
-  metric->count = mesh->rank == 0 ? mesh->num_boundary_vertices : 0;
+  metric->loop = loop;
+  metric->count = loop->count;
   PetscCall(PetscCalloc7(metric->count, &metric->stiffness, metric->count, &metric->mass, metric->count, &metric->rhs,
                          metric->count, &metric->sum, metric->count, &metric->diagonal, metric->count,
                          &metric->solution, metric->count, &metric->coupling));
-  PetscCall(PetscMalloc2(mesh->num_local, &place, mesh->num_local, &arc_length));
-  PetscCall(PetscMalloc3(num, &root, 2 * num, &mine, 2 * metric->count, &point));
-  PetscCall(EqmMeshBoundaryLoop(mesh, place, arc_length));
-  for (PetscInt b = 0; b < num; b++) {
-    root[b] = (PetscSFNode){.rank = 0, .index = place[vertex[b]]};
-    for (PetscInt k = 0; k < 2; k++) mine[2 * b + k] = x[2 * vertex[b] + k];
-  }
-  PetscCall(PetscSFCreate(mesh->comm, &metric->gather));
-  PetscCall(PetscSFSetGraph(metric->gather, metric->count, num, NULL, PETSC_COPY_VALUES, root, PETSC_COPY_VALUES));
-  PetscCall(EqmRowsToRoots(metric->gather, 2, mine, point));
-  PetscCall(Discretise(metric, point));
-  PetscCall(PetscFree2(place, arc_length));
-  PetscCall(PetscFree3(root, mine, point));
+  PetscCall(PetscMalloc2(2 * metric->count, &point, metric->count, &gap));
+  PetscCall(EqmLoopGaps(loop, x, point, gap));
+  PetscCall(Discretise(metric, gap));
+  PetscCall(PetscFree2(point, gap));
   *out = metric;
   PetscFunctionReturn(0);
 }
@@ -78,7 +62,6 @@ PetscErrorCode EqmLoopMetricDestroy(EqmLoopMetric *metric)
 {
   PetscFunctionBegin;
   if (!*metric) PetscFunctionReturn(0);
-  PetscCall(PetscSFDestroy(&(*metric)->gather));
   PetscCall(PetscFree7((*metric)->stiffness, (*metric)->mass, (*metric)->rhs, (*metric)->sum, (*metric)->diagonal,
                        (*metric)->solution, (*metric)->coupling));
   PetscCall(PetscFree(*metric));
@@ -121,13 +104,13 @@ static void SolveLoop(EqmLoopMetric metric, PetscReal weight)
 PetscErrorCode EqmLoopMetricApply(EqmLoopMetric metric, const PetscReal *g, PetscReal *h)
 {
   PetscFunctionBegin;
-  PetscCall(EqmRowsToRoots(metric->gather, 1, g, metric->rhs));
+  PetscCall(EqmLoopGather(metric->loop, g, metric->rhs));
   for (PetscInt k = 0; k < metric->count; k++) metric->sum[k] = 0.;
   for (PetscReal u = metric->first; metric->count > 0 && u < metric->last; u += node_step) {
     SolveLoop(metric, PetscExpReal(2. * u) + shift);
     for (PetscInt k = 0; k < metric->count; k++)
       metric->sum[k] += 2. / PETSC_PI * node_step * PetscExpReal(u) * metric->solution[k];
   }
-  PetscCall(EqmRowsToLeaves(metric->gather, 1, metric->sum, h));
+  PetscCall(EqmLoopScatter(metric->loop, metric->sum, h));
   PetscFunctionReturn(0);
 }

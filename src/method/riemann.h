@@ -3,6 +3,7 @@
 #define EQM_RIEMANN_H
 
 #include "method/method.h"
+#include "method/loop.h"
 
 /* The interior follows the boundary harmonically, z_I = -L_II^-1 L_IB z_B, so that with z_B = e^{i theta}
 
@@ -14,15 +15,17 @@
    drift. */
 typedef struct _p_EqmRiemann *EqmRiemann;
 /* Gaps between neighbours on the circle that the arithmetic tells from none. */
-#define EQM_RIEMANN_LEAST_GAP 1e-12
+#define EQM_RIEMANN_LEAST_GAP 1e-9
 struct _p_EqmRiemann {
   PetscInt num_boundary; /* owned vertices on the boundary */
   PetscInt *boundary;    /* their local numbers */
-  PetscReal *centre;     /* h, per entry of `boundary` */
-  PetscReal *weights;    /* cotangents, per local cell */
-  signed char *group;    /* per local vertex: EQM_GROUP_FIXED on the boundary, 0 inside */
-  PetscReal *scratch;    /* two per owned vertex */
-  Vec move;              /* degrees of freedom of the domain: zero inside */
+  EqmLoop loop;
+  PetscReal *centre;  /* h, per entry of `boundary` */
+  PetscInt pole;      /* the vertex deepest inside, on the rank that owns it; elsewhere -1 */
+  PetscReal *weights; /* cotangents, per local cell */
+  signed char *group; /* per local vertex: EQM_GROUP_FIXED on the boundary, 0 inside */
+  PetscReal *scratch; /* two per owned vertex */
+  Vec move;           /* degrees of freedom of the domain: zero inside */
 };
 
 /* Factors L_II, the one factorisation. Collective. */
@@ -33,16 +36,17 @@ PETSC_INTERN PetscErrorCode EqmRiemannCreateVec(EqmProblem problem, EqmRiemann r
 /* Add t times `angles` to the boundary's angles; the interior is not moved. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannMove(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from, PetscReal t,
                                            Vec angles, EqmPlace *to);
-/* The largest t in (0, 1] for which t times `angles` keeps the boundary's order, with a margin; 0 where two
-   neighbours have run together already. Collective. */
-PETSC_INTERN PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from,
-                                                  Vec angles, PetscReal *t);
 /* The smallest gap between neighbours on the boundary; not positive where they are out of order. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannSmallestGap(EqmProblem problem, const EqmPlace *place, PetscReal *smallest);
 /* E and its gradient with respect to the angles for the boundary of `place`; moves the interior to its harmonic images.
    Two solves, one evaluation. Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannEnergy(EqmProblem problem, EqmRiemann riemann, EqmPlace *place, PetscReal *energy,
                                              Vec gradient);
+/* The boundary where the Riemann map that takes the pole to the centre has it, up to the discretisation: by harmonic
+   measure. `crowded`: it brings neighbours too close together for the arithmetic, and they are held apart. One solve.
+   Collective. */
+PETSC_INTERN PetscErrorCode EqmRiemannPlaceByMeasure(EqmProblem problem, EqmRiemann riemann, EqmPlace *place,
+                                                     PetscBool *crowded);
 /* Bring the mass centre to the disk's centre by a Moebius map of the disk to itself, applied to the boundary.
    Collective. */
 PETSC_INTERN PetscErrorCode EqmRiemannCentre(EqmProblem problem, EqmRiemann riemann, EqmPlace *place);

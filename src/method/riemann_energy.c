@@ -2,7 +2,28 @@
 #include "method/riemann.h"
 #include "domain/domain_private.h"
 
-/* h = m_B - L_BI L_II^-1 m_I: weights of the boundary's vertices in the mass centre of a harmonic map. */
+/* The vertex with the most of a function that is zero on the boundary; of several the first in the input. */
+static PetscErrorCode FindPole(EqmMesh mesh, const PetscReal *depth, EqmRiemann riemann)
+{
+  PetscReal mine = 0., most;
+  PetscInt first = PETSC_MAX_INT, number;
+
+  PetscFunctionBegin;
+  for (PetscInt v = 0; v < mesh->num_owned; v++) mine = PetscMax(mine, mesh->on_boundary[v] ? 0. : depth[v]);
+  PetscCall(MPIU_Allreduce(&mine, &most, 1, MPIU_REAL, MPIU_MAX, mesh->comm));
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    if (!mesh->on_boundary[v] && depth[v] >= (1. - 1e-9) * most) first = PetscMin(first, mesh->vertex_input[v]);
+  }
+  PetscCall(MPIU_Allreduce(&first, &number, 1, MPIU_INT, MPI_MIN, mesh->comm));
+  riemann->pole = -1;
+  for (PetscInt v = 0; v < mesh->num_owned; v++) {
+    if (mesh->vertex_input[v] == number) riemann->pole = v;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* h = m_B - L_BI L_II^-1 m_I: weights of the boundary's vertices in the mass centre of a harmonic map. The solution
+   L_II^-1 m_I, the mean time of a random walk to the boundary, tells the pole. */
 static PetscErrorCode FindCentreWeights(EqmProblem problem, EqmRiemann riemann)
 {
   const EqmMesh mesh = problem->mesh;
@@ -18,6 +39,7 @@ static PetscErrorCode FindCentreWeights(EqmProblem problem, EqmRiemann riemann)
     mass[riemann->boundary[b]] = 0.;
   }
   PetscCall(EqmGroupSolve(problem, 1, mass)); /* the boundary's rows are identities */
+  PetscCall(FindPole(mesh, mass, riemann));
   PetscCall(EqmMeshUpdateGhosts(mesh, 1, mass));
   PetscCall(EqmLaplacianApply(mesh, riemann->weights, 1, mass, image));
   for (PetscInt b = 0; b < riemann->num_boundary; b++) riemann->centre[b] -= image[riemann->boundary[b]];
@@ -39,6 +61,7 @@ PetscErrorCode EqmRiemannCreate(EqmProblem problem, EqmRiemann *out)
     riemann->group[v] = mesh->on_boundary[v] ? EQM_GROUP_FIXED : 0;
     if (v < mesh->num_owned && mesh->on_boundary[v]) riemann->boundary[riemann->num_boundary++] = v;
   }
+  PetscCall(EqmLoopCreate(mesh, riemann->num_boundary, riemann->boundary, &riemann->loop));
   PetscCall(EqmDomainCreateVec(problem->domain, &riemann->move));
   PetscCall(VecZeroEntries(riemann->move));
   PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_COTANGENT, NULL, riemann->weights));
@@ -54,6 +77,7 @@ PetscErrorCode EqmRiemannDestroy(EqmRiemann *riemann)
   if (!*riemann) PetscFunctionReturn(0);
   PetscCall(PetscFree5((*riemann)->boundary, (*riemann)->centre, (*riemann)->weights, (*riemann)->group,
                        (*riemann)->scratch));
+  PetscCall(EqmLoopDestroy(&(*riemann)->loop));
   PetscCall(VecDestroy(&(*riemann)->move));
   PetscCall(PetscFree(*riemann));
   PetscFunctionReturn(0);
@@ -89,29 +113,6 @@ PetscErrorCode EqmRiemannMove(EqmProblem problem, EqmRiemann riemann, const EqmP
   PetscFunctionBegin;
   PetscCall(Spread(problem, riemann, angles));
   PetscCall(EqmDomainMove(problem->domain, from, t, riemann->move, to));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmRiemannStepInOrder(EqmProblem problem, EqmRiemann riemann, const EqmPlace *from, Vec angles,
-                                     PetscReal *t)
-{
-  const EqmMesh mesh = problem->mesh;
-  PetscReal *velocity, local = 1.;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(2 * mesh->num_local, &velocity));
-  PetscCall(Spread(problem, riemann, angles));
-  PetscCall(EqmDomainExpand(problem->domain, from, riemann->move, velocity));
-  for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
-    const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
-    const PetscReal *const p = from->x + 2 * i, *const q = from->x + 2 * j, *const u = velocity + 2 * i,
-                           *const v = velocity + 2 * j;
-    const PetscReal gap = PetscAtan2Real(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]);
-    const PetscReal opening = q[0] * v[1] - q[1] * v[0] - p[0] * u[1] + p[1] * u[0];
-    if (opening < 0.) local = PetscMin(local, -.9 * PetscMax(0., gap - EQM_RIEMANN_LEAST_GAP) / opening);
-  }
-  PetscCall(MPIU_Allreduce(&local, t, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
-  PetscCall(PetscFree(velocity));
   PetscFunctionReturn(0);
 }
 
@@ -214,6 +215,7 @@ PetscErrorCode EqmRiemannCentre(EqmProblem problem, EqmRiemann riemann, EqmPlace
     const PetscReal m[3] = {sum[2] - sum[3], -sum[4], sum[2] + sum[3]}, det = m[0] * m[2] - m[1] * m[1];
     PetscReal a[2] = {(m[1] * sum[1] - m[2] * sum[0]) / det, (m[1] * sum[0] - m[0] * sum[1]) / det};
     const PetscReal length = PetscSqrtReal(a[0] * a[0] + a[1] * a[1]);
+    if (PetscIsInfOrNanReal(length)) break; /* the mass is where the boundary has run together: there is no centre */
     for (PetscInt k = 0; k < 2 && length > longest; k++) a[k] *= longest / length;
     for (PetscInt b = 0; b < riemann->num_boundary; b++) MoveCircle(a, place->x + 2 * riemann->boundary[b]);
   }

@@ -93,6 +93,7 @@ static PetscErrorCode TestLoopMetric(void)
 {
   TestMesh test;
   EqmDomain domain;
+  EqmLoop loop;
   EqmLoopMetric metric;
   PetscInt num = 0, *vertex, *place;
   PetscReal *x, *arc, *g, *h;
@@ -109,7 +110,8 @@ static PetscErrorCode TestLoopMetric(void)
     x[2 * v] = PetscCosReal(gap * place[v]);
     x[2 * v + 1] = PetscSinReal(gap * place[v]);
   }
-  PetscCall(EqmLoopMetricCreate(test.mesh, num, vertex, x, &metric));
+  PetscCall(EqmLoopCreate(test.mesh, num, vertex, &loop));
+  PetscCall(EqmLoopMetricCreate(loop, x, &metric));
   for (PetscInt k = 0; k < test.mesh->num_boundary_vertices / 2; k = 2 * k + 1) {
     const PetscReal eigenvalue = 2. * (1. - PetscCosReal(k * gap)) / PetscSqr(gap) + .5;
     for (PetscInt b = 0; b < num; b++) g[b] = PetscCosReal(k * gap * place[vertex[b]]);
@@ -117,6 +119,7 @@ static PetscErrorCode TestLoopMetric(void)
     for (PetscInt b = 0; b < num; b++) CHECK_CLOSE(h[b] * gap * PetscSqrtReal(eigenvalue), g[b], 2e-2, 1.);
   }
   PetscCall(EqmLoopMetricDestroy(&metric));
+  PetscCall(EqmLoopDestroy(&loop));
   PetscCall(PetscFree6(vertex, place, x, arc, g, h));
   PetscCall(EqmDomainDestroy(&domain));
   PetscCall(TestMeshDestroy(&test));
