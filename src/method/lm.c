@@ -62,10 +62,19 @@ static PetscErrorCode AdaptUpright(EqmMethod method, PetscReal t, PetscReal old_
   PetscFunctionReturn(0);
 }
 
+/* Is a decrease that the model promises rounding only? Not where damping keeps steps short, nor on the sphere, where a
+   minimum of the sum with the upright term is not yet one of the residual. */
+static PetscBool IsRounding(const EqmLm *lm, PetscReal predicted, PetscReal level)
+{
+  if (lm->residual->without_mean && (lm->upright || lm->mu > 1.)) return PETSC_FALSE;
+  return (PetscBool)(predicted <= level * lm->now.objective);
+}
+
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
   EqmLm *const lm = method->data;
   const PetscReal old_squares = lm->now.squares;
+  PetscBool at_rest = PETSC_FALSE; /* close to a minimum: should no step decrease the objective, this is one */
   PetscReal t = 0.;
 
   PetscFunctionBegin;
@@ -82,15 +91,16 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
     if (success) {
       PetscCall(EqmLmSolveForCurve(method, &ratio));
       PetscCall(EqmLmPredictedDecrease(method, &predicted));
-      if (!lm->residual->without_mean && predicted <= 1e-12 * lm->now.objective) { /* what is left is rounding */
+      if (IsRounding(lm, predicted, 1e-12)) {
         *outcome = EQM_STEP_CONVERGED;
         PetscFunctionReturn(0);
       }
+      at_rest = (PetscBool)(at_rest || IsRounding(lm, predicted, 1e-8));
       PetscCall(EqmLmSearch(method, ratio, predicted, &t));
     }
     if (t == 0.) lm->mu = PetscMax(10. * lm->mu, 1e-16);
   }
-  *outcome = EQM_STEP_STALLED;
+  *outcome = at_rest ? EQM_STEP_CONVERGED : EQM_STEP_STALLED;
   if (t == 0.) PetscFunctionReturn(0);
   AdaptDamping(lm, t);
   EqmLmSwap(&lm->now, &lm->best);
