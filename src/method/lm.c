@@ -113,35 +113,6 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
 
 /* ---- life */
 
-static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
-{
-  EqmLm *const lm = method->data;
-  char name[32];
-  PetscBool given, is_auto;
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsBoundedInt("-lm_inner",
-                                   "lm: at most so many quasi-Newton steps on each factor; with 0 a map takes more "
-                                   "factorisations, and hardly magnifies the rounding of the input",
-                                   "EqmSolverSetFromOptions", lm->most_inner, &lm->most_inner, NULL, 0));
-  PetscCall(PetscOptionsString("-lm_residual",
-                               "lm: what is squared of each ratio r: log (of r, less its mean), mixed (r - 1 where r > "
-                               "1, else log r), ratio (r - 1), or auto: mixed beside the angle energy, else log",
-                               "EqmSolverSetFromOptions", "auto", name, sizeof(name), &given));
-  if (!given) PetscFunctionReturn(0);
-  PetscCall(PetscStrcmp(name, "auto", &is_auto));
-  lm->wanted = NULL;
-  if (!is_auto) PetscCall(EqmResidualFind(method->comm, name, &lm->wanted));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmLmSetInnerSteps(EqmMethod method, PetscInt steps)
-{
-  PetscFunctionBegin;
-  ((EqmLm *)method->data)->most_inner = steps;
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode TrialCreate(EqmMethod method, EqmTrial *trial)
 {
   const PetscInt n = method->problem->mesh->num_local_cells;
@@ -206,19 +177,6 @@ static PetscErrorCode TakeStart(EqmMethod method, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
-/* The one that the user wants, or the one that suits the problem's terms. */
-static PetscErrorCode ChooseResidual(EqmMethod method)
-{
-  EqmLm *const lm = method->data;
-  PetscBool has_angle = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  for (EqmTerm term = method->problem->terms; term && !has_angle; term = term->next)
-    PetscCall(PetscStrcmp(term->name, "angle", &has_angle));
-  lm->residual = lm->wanted ? lm->wanted : has_angle ? &EqmResidualMixed : &EqmResidualLog;
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
   EqmLm *const lm = method->data;
@@ -227,7 +185,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscFunctionBegin;
   lm->mu = 1.;
   lm->term_scale = 1. / problem->domain->target_measure;
-  PetscCall(ChooseResidual(method));
+  PetscCall(EqmLmChooseResidual(method));
   lm->level = lm->residual->without_mean ? 0. : PetscLogReal(iterate->totals.total);
   SetKappa(lm, 0.);
   if (problem->domain->curved_image) {
@@ -296,7 +254,7 @@ PetscErrorCode EqmMethodCreateLm(EqmMethod method)
   method->data = lm;
   method->purpose = "Levenberg-Marquardt on log ratios with geodesic acceleration";
   method->takes_terms = method->needs_ratios = PETSC_TRUE;
-  method->ops =
-      (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
+  method->ops = (EqmMethodOps){
+      .set_from_options = EqmLmSetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);
 }

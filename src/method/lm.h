@@ -53,4 +53,9 @@ PETSC_INTERN PetscErrorCode EqmLmSearch(EqmMethod method, PetscReal ratio, Petsc
 PETSC_INTERN PetscErrorCode EqmLmInnerSteps(EqmMethod method, EqmIterate iterate);
 PETSC_INTERN void EqmLmSwap(EqmTrial *a, EqmTrial *b);
 
+/* ---- lm_settings.c */
+PETSC_INTERN PetscErrorCode EqmLmSetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject);
+/* The residual that is wanted, or the one that suits the problem's terms. Collective. */
+PETSC_INTERN PetscErrorCode EqmLmChooseResidual(EqmMethod method);
+
 #endif

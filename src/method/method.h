@@ -6,6 +6,7 @@
 #define EQM_METHOD_H
 
 #include "problem/problem.h"
+#include "problem/residual.h"
 #include "problem/metric.h"
 #include "problem/objective.h"
 #include "problem/state.h"
@@ -88,7 +89,7 @@ PETSC_INTERN PetscErrorCode EqmMethodCreateQiem(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateEulerExplicit(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateEulerImplicit(EqmMethod method);
 
-/* ---- settings that depend on the target (lbfgs.c, lm.c) */
+/* ---- settings that depend on the target (lbfgs.c, lm_settings.c) */
 typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
 PETSC_INTERN PetscErrorCode EqmLbfgsSetMemory(EqmMethod lbfgs, PetscInt memory);
 PETSC_INTERN PetscErrorCode EqmLbfgsSetLineSearch(EqmMethod lbfgs, EqmLbfgsLineSearch search);
@@ -97,5 +98,9 @@ PETSC_INTERN PetscErrorCode EqmLbfgsSetLineSearch(EqmMethod lbfgs, EqmLbfgsLineS
 PETSC_INTERN PetscErrorCode EqmLbfgsRestart(EqmMethod lbfgs, EqmIterate iterate);
 /* At most so many quasi-Newton steps on each factor. */
 PETSC_INTERN PetscErrorCode EqmLmSetInnerSteps(EqmMethod lm, PetscInt steps);
+/* The residual from the next set-up on; NULL: the one that suits the problem. Not collective. */
+PETSC_INTERN PetscErrorCode EqmLmSetResidual(EqmMethod lm, const EqmResidual *residual);
+/* Has lm squared logarithms because that suits the problem, and not because the user wants them? Not collective. */
+PETSC_INTERN PetscErrorCode EqmLmIsByLogarithms(EqmMethod lm, PetscBool *is);
 
 #endif

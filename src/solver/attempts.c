@@ -1,16 +1,21 @@
-/* Other starts, where the default's has led nowhere: a map with folds, one that is far from what the objective wants,
-   or a method that stands still before it. Each attempt begins anew with its own history and, if the run has
-   checkpoints, its own: FILE.2, FILE.3, ... The best map is the run's. */
+/* What a run does before it tells the user that its map is not good. lm minimises logarithms of ratios, which bring
+   collapsed cells back and are lenient with those that are too large; where ratios are off at the end by more than one
+   in a hundred it goes on with the mixed residual, which is close to E on that side. Where that leaves folds, or
+   ratios off by a tenth, other starts are tried. Each attempt has, if the run has checkpoints, one of its own: FILE.2,
+   FILE.3,
+   ... The best map is the run's. */
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
 #include "base/quiet.h"
 #include "solver/inner.h"
 #include <string.h>
 
-/* Above this energy, per target measure, another start may do better: ratios off by one in a hundred. */
+/* Above this energy, per measure of the image, the mixed residual does better: ratios off by one in a hundred. */
 static const PetscReal fair_energy = 1e-4;
+/* Above this one another start may: ratios off by a tenth. */
+static const PetscReal far_energy = 1e-2;
 
-enum { MOST_ATTEMPTS = 8 };
+enum { MOST_STARTS = 8 };
 
 /* What one attempt has found. */
 typedef struct {
@@ -58,15 +63,22 @@ static PetscErrorCode Destroy(Attempt *attempt)
   PetscFunctionReturn(0);
 }
 
-/* Is there a reason to try another start? What a user has limited is left as it is. */
-static PetscBool IsDisappointing(EqmSolver solver)
+/* Is the map without folds, but further from equal ratios than `level`? What a user has limited is left as it is, and
+   equal ratios are not all that is wanted where there are terms. */
+static PetscBool IsOff(EqmSolver solver, PetscReal level)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
 
+  if (solver->status == EQM_STATUS_STOPPED || solver->limited || solver->problem->terms || totals->folds > 0)
+    return PETSC_FALSE;
+  return (PetscBool)(solver->problem->objective->poor_energy > 0. && totals->energy > level * totals->total);
+}
+
+/* Is there a reason to try another start? */
+static PetscBool IsDisappointing(EqmSolver solver)
+{
   if (solver->status == EQM_STATUS_STOPPED || solver->limited) return PETSC_FALSE;
-  if (totals->folds > 0) return PETSC_TRUE;
-  if (solver->problem->terms) return PETSC_FALSE; /* equal ratios are not all that is wanted */
-  return (PetscBool)(solver->problem->objective->poor_energy > 0. && totals->energy > fair_energy * totals->total);
+  return (PetscBool)(solver->iterate->totals.folds > 0 || IsOff(solver, far_energy));
 }
 
 /* Fewer folds, or as many and a lower objective. */
@@ -132,18 +144,70 @@ static PetscErrorCode Begin(EqmSolver solver, PetscInt count, PetscReal *tried, 
   PetscFunctionReturn(0);
 }
 
-/* From another start. */
-static PetscErrorCode TryStart(EqmSolver solver, const EqmStartType *start, PetscInt count, PetscReal *tried)
+/* ---- the mixed residual */
+
+/* The map so far, its history and what the checkpoint of this attempt has in their place. */
+static PetscErrorCode TakeOver(EqmSolver solver, const Attempt *from)
+{
+  EqmIterate const iterate = solver->iterate;
+
+  PetscFunctionBegin;
+  solver->limited = PETSC_FALSE;
+  if (solver->settings.restart[0]) {
+    PetscCall(EqmCheckpointLoadMap(solver));
+  } else {
+    PetscCall(EqmPlaceCopy(solver->problem->domain, &from->iterate->place, &iterate->place));
+    iterate->number = from->iterate->number + 1;
+    PetscCall(EqmHistoryReserve(solver, from->num_history));
+    PetscCall(PetscArraycpy(solver->history, from->history, from->num_history));
+    PetscCall(PetscArraycpy(solver->objectives, from->objectives, from->num_history));
+    solver->begun_again = solver->num_history = from->num_history;
+  }
+  PetscCall(EqmIterateUpdate(solver->problem, iterate));
+  PetscFunctionReturn(0);
+}
+
+/* Go on from the present map, as the next attempt, if that is for it. */
+static PetscErrorCode GoOn(EqmSolver solver, const EqmSolverSettings *first, size_t suffix, PetscInt *attempt)
+{
+  Attempt before = {.status = EQM_STATUS_NOT_CONVERGED, .start = solver->start};
+  PetscBool can = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (!strcmp(solver->defaults.method, "lm")) PetscCall(EqmLmIsByLogarithms(solver->method, &can));
+  if (!can || !IsOff(solver, fair_energy) || solver->iterate->number >= solver->settings.max_it) PetscFunctionReturn(0);
+  PetscCall(SetStage(solver, first, suffix, ++*attempt));
+  PetscCall(EqmProblemNotify(solver->problem, "energy %.3g: on with the mixed residual\n",
+                             (double)solver->iterate->totals.energy));
+  PetscCall(EqmIterateCreate(solver->problem, &before.iterate));
+  PetscCall(Exchange(solver, &before));
+  PetscCall(TakeOver(solver, &before));
+  PetscCall(EqmLmSetResidual(solver->method, &EqmResidualMixed));
+  PetscCall(EqmSolverRun(solver));
+  PetscCall(EqmLmSetResidual(solver->method, NULL));
+  if (solver->status != EQM_STATUS_STOPPED && !IsBetter(solver->iterate, before.iterate))
+    PetscCall(Exchange(solver, &before));
+  PetscCall(Destroy(&before));
+  PetscFunctionReturn(0);
+}
+
+/* ---- other starts */
+
+/* From another start, as the next attempt. `count`: starts tried. */
+static PetscErrorCode TryStart(EqmSolver solver, const EqmStartType *start, const EqmSolverSettings *first,
+                               size_t suffix, PetscInt *attempt, PetscInt count, PetscReal *tried)
 {
   Attempt other = {.status = EQM_STATUS_NOT_CONVERGED, .start = start};
   PetscBool begun;
 
   PetscFunctionBegin;
+  PetscCall(SetStage(solver, first, suffix, ++*attempt));
   PetscCall(Tell(solver, start->name));
   PetscCall(EqmIterateCreate(solver->problem, &other.iterate));
   PetscCall(Exchange(solver, &other));
   PetscCall(Begin(solver, count, tried, &begun));
   if (begun) PetscCall(EqmSolverRun(solver));
+  if (begun) PetscCall(GoOn(solver, first, suffix, attempt));
   if (!begun || (solver->status != EQM_STATUS_STOPPED && !IsBetter(solver->iterate, other.iterate)))
     PetscCall(Exchange(solver, &other));
   PetscCall(Destroy(&other));
@@ -165,31 +229,38 @@ PetscBool EqmSolverIsBlocked(EqmSolver solver)
                      !strcmp(solver->defaults.method, "lm"));
 }
 
-PetscErrorCode EqmSolverTryOtherStarts(EqmSolver solver)
+static PetscErrorCode TryStarts(EqmSolver solver, const EqmSolverSettings *first, size_t suffix, PetscInt *attempt)
 {
   const EqmFormulation *const formulation = solver->formulation;
-  const EqmSolverSettings first = solver->settings;
-  const size_t suffix = solver->checkpoints.suffix;
   char *names = NULL, *rest;
-  PetscInt attempt = 1;
-  PetscReal tried[MOST_ATTEMPTS];
+  PetscInt count = 1;
+  PetscReal tried[MOST_STARTS];
 
   PetscFunctionBegin;
-  if (!HasOtherStarts(solver)) PetscFunctionReturn(0);
   PetscCall(PetscStrallocpy(formulation->other_starts, &names));
   tried[0] = solver->num_history > 0 ? solver->history[0].energy : -1.;
-  for (char *name = strtok_r(names, ",", &rest); name && attempt < MOST_ATTEMPTS && IsDisappointing(solver);
+  for (char *name = strtok_r(names, ",", &rest); name && count < MOST_STARTS && IsDisappointing(solver);
        name = strtok_r(NULL, ",", &rest)) {
     const EqmStartType *start;
 
     PetscCall(EqmStartFind(solver->comm, formulation->starts, formulation->domain, name, &start));
-    PetscCall(SetStage(solver, &first, suffix, ++attempt));
-    PetscCall(TryStart(solver, start, attempt - 1, tried));
+    PetscCall(TryStart(solver, start, first, suffix, attempt, count++, tried));
   }
   PetscCall(PetscFree(names));
-  if (attempt == 1) PetscFunctionReturn(0);
-  PetscCall(SetStage(solver, &first, suffix, 1));
-  if (solver->status == EQM_STATUS_NOT_CONVERGED && !solver->limited)
+  if (count > 1 && solver->status == EQM_STATUS_NOT_CONVERGED && !solver->limited)
     PetscCall(PetscStrlcat(solver->message, "; other starts did no better", sizeof(solver->message)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverTryAgain(EqmSolver solver)
+{
+  const EqmSolverSettings first = solver->settings;
+  const size_t suffix = solver->checkpoints.suffix;
+  PetscInt attempt = 1;
+
+  PetscFunctionBegin;
+  PetscCall(GoOn(solver, &first, suffix, &attempt));
+  if (HasOtherStarts(solver)) PetscCall(TryStarts(solver, &first, suffix, &attempt));
+  if (attempt > 1) PetscCall(SetStage(solver, &first, suffix, 1));
   PetscFunctionReturn(0);
 }

@@ -166,7 +166,7 @@ PetscErrorCode EqmSolverSolve(EqmSolver solver)
   PetscCall(EqmSolverSetUp(solver));
   blocked = EqmSolverIsBlocked(solver);
   if (!blocked) PetscCall(EqmSolverRun(solver));
-  PetscCall(EqmSolverTryOtherStarts(solver));
+  PetscCall(EqmSolverTryAgain(solver));
   if (blocked && solver->iterate->totals.folds > 0) PetscCall(EqmSolverRun(solver)); /* which says so */
   PetscCall(EqmJudgePoor(solver));
   PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_END, solver->message));

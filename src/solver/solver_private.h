@@ -49,7 +49,8 @@ struct _p_EqmSolver {
   PetscInt num_history, max_history;
   EqmStatus status;
   char message[EQM_MESSAGE_MAX];
-  PetscInt begun_again; /* the row of the history at which the iterations began once more after a collapse; 0: never */
+  PetscInt begun_again; /* the row of the history at which the iterations began once more, after a collapse or with
+                           another residual; 0: never */
   PetscBool poor;       /* not converged, and far from equal areas */
   PetscBool collapsed;  /* the iterations ended at no map of the solid to the ball (mend.c) */
   PetscBool limited;    /* the iterations ended by a limit of the user's, not by themselves */
@@ -85,9 +86,9 @@ PETSC_INTERN PetscErrorCode EqmSolverNotify(void *solver, const char *text);
 PETSC_INTERN PetscErrorCode EqmSolverNotifyUnfolded(EqmSolver solver, const char *when);
 /* Prefix of the options of the surface's map in the ball's start. */
 #define EQM_BOUNDARY_PREFIX "boundary_"
-/* ---- attempts.c: where the default's start has led far from the objective, other starts; the best map is the
-   solver's. Collective. */
-PETSC_INTERN PetscErrorCode EqmSolverTryOtherStarts(EqmSolver solver);
+/* ---- attempts.c: where the run has not come close to the objective, another residual from its map, then other starts;
+   the best map is the solver's. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverTryAgain(EqmSolver solver);
 /* Has the default's start left folds that the method cannot take? Not collective. */
 PETSC_INTERN PetscBool EqmSolverIsBlocked(EqmSolver solver);
 /* ---- run.c: from the first map to the end of iterations and unfolding. Collective. */
