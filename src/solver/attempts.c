@@ -1,7 +1,7 @@
 /* What a run does before it tells the user that its map is not good. lm minimises logarithms of ratios, which bring
    collapsed cells back and are lenient with those that are too large; where ratios are off at the end by more than one
-   in a hundred it goes on with the mixed residual, which is close to E on that side. Where that leaves folds, or
-   ratios off by a tenth, other starts are tried. Each attempt has, if the run has checkpoints, one of its own: FILE.2,
+   in a hundred it goes on with the mixed residual, which is close to E on that side. Where that leaves folds, or a
+   map that is far off, other starts are tried. Each attempt has, if the run has checkpoints, one of its own: FILE.2,
    FILE.3,
    ... The best map is the run's. */
 #include "solver/solver_private.h"
@@ -12,8 +12,6 @@
 
 /* Above this energy, per measure of the image, the mixed residual does better: ratios off by one in a hundred. */
 static const PetscReal fair_energy = 1e-4;
-/* Above this one another start may: ratios off by a tenth. */
-static const PetscReal far_energy = 1e-2;
 
 enum { MOST_STARTS = 8 };
 
@@ -78,7 +76,7 @@ static PetscBool IsOff(EqmSolver solver, PetscReal level)
 static PetscBool IsDisappointing(EqmSolver solver)
 {
   if (solver->status == EQM_STATUS_STOPPED || solver->limited) return PETSC_FALSE;
-  return (PetscBool)(solver->iterate->totals.folds > 0 || IsOff(solver, far_energy));
+  return (PetscBool)(solver->iterate->totals.folds > 0 || IsOff(solver, solver->formulation->far_energy));
 }
 
 /* Fewer folds, or as many and a lower objective. */

@@ -73,6 +73,9 @@ static const EqmMethodDefaults in_cube[] = {
 
 #define METHODS(list) .methods = (list), .num_methods = sizeof(list) / sizeof((list)[0])
 
+/* Other starts: in the plane one, which gets symmetric meshes off their saddle points, where ratios are off by a
+   hundredth; on the sphere four, where they are off by a tenth: of closed models between the two none gained by them.
+ */
 static const EqmFormulation formulations[] = {
     {.target = "disk",
      .domain = "disk",
@@ -80,6 +83,7 @@ static const EqmFormulation formulations[] = {
      .starts = EQM_STARTS_PLANE,
      .takes_balance = PETSC_TRUE,
      .other_starts = "cascade",
+     .far_energy = 1e-4,
      METHODS(in_plane)},
     {.target = "square",
      .domain = "square",
@@ -87,6 +91,7 @@ static const EqmFormulation formulations[] = {
      .starts = EQM_STARTS_PLANE,
      .takes_balance = PETSC_TRUE,
      .other_starts = "cascade",
+     .far_energy = 1e-4,
      METHODS(in_plane)},
     {.target = "sphere",
      .domain = "sphere",
@@ -96,6 +101,7 @@ static const EqmFormulation formulations[] = {
      .starts = EQM_STARTS_SPHERE,
      .takes_balance = PETSC_TRUE,
      .other_starts = "gauss,cascade,tutte,linear",
+     .far_energy = 1e-2,
      METHODS(on_sphere)},
     {.target = "conformal",
      .domain = "disk",

@@ -29,6 +29,7 @@ typedef struct {
   PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
   EqmStartFamily starts;
   const char *other_starts; /* tried one after the other where the default's leads far from the objective; NULL: none */
+  PetscReal far_energy;     /* per measure of the image: where the map's is above it they are tried */
   PetscBool takes_balance;  /* -balance has a meaning */
   const EqmMethodDefaults *methods; /* the first is -method auto */
   PetscInt num_methods;

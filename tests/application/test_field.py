@@ -103,7 +103,7 @@ def check_sphere(program):
     good = 0.1 ** 2 * 4 * numpy.pi
     write(program, "cylinder.obj", *cylinder(120))
     assert energy(program, "sphere", "cylinder.obj")[0] <= 1e-3
-    write(program, "bar.obj", *bent_bar(16))
+    write(program, "bar.obj", *bent_bar(30))
     default, text = energy(program, "sphere", "bar.obj", codes=(0, 4))
     single = [energy(program, "sphere", "bar.obj", "-start", start, codes=(0, 4))[0] for start in ("tutte", "cascade")]
     assert default <= max(min(single) * (1 + 1e-3), good), (default, single)

@@ -29,7 +29,8 @@ int main(int argc, char **argv)
   PetscCall(EqmInitialize(&argc, &argv));
   PetscCall(TestHills("", EQM_STATUS_CONVERGED));
   PetscCall(TestHills("-method qiem -max_it 5", EQM_STATUS_NOT_CONVERGED));
-  PetscCall(TestSameOnRanks("hills", 800, "conformal", "", 1e-7, 1.));
+  /* it begins with harmonic measure, close to the end; what folds cost, as they are mended, is more than the rest */
+  PetscCall(TestSameOnRanks("hills", 800, "conformal", "", 1e-7, 1.001));
   PetscCall(TestSameWithThreads(PETSC_COMM_SELF, "hills", 800, "conformal", ""));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
