@@ -1,11 +1,14 @@
-/* equimap convert IN OUT: from one mesh format to another, repaired or refined, or the surface of a solid. */
+/* equimap convert IN OUT: from one mesh format to another, repaired or refined; the surface of a solid, the solid in a
+   surface. */
 #include "app.h"
 #include "mesh/mesh_private.h"
 #include "mesh/target.h"
+#include "prepare/fill.h"
 #include "prepare/prepare.h"
 
 typedef struct {
-  PetscBool repair, boundary, has_target;
+  PetscBool repair, boundary, fill, has_target;
+  EqmFillOptions filling;
   EqmPrepareOptions prepare;
   char target[32];
   PetscInt refine;
@@ -15,7 +18,8 @@ typedef struct {
 static PetscErrorCode ReadOptions(ConvertOptions *options)
 {
   PetscFunctionBegin;
-  options->repair = options->boundary = PETSC_FALSE;
+  options->repair = options->boundary = options->fill = PETSC_FALSE;
+  options->filling = (EqmFillOptions){.quality = 1.4, .volume = 0.};
   options->refine = 0;
   options->scale = 1.;
   EqmPrepareOptionsInit(&options->prepare);
@@ -36,10 +40,24 @@ static PetscErrorCode ReadOptions(ConvertOptions *options)
                              "write the surface around a solid: its boundary vertices in their order, triangles that "
                              "look outward",
                              "convert", options->boundary, &options->boundary, NULL));
+  PetscCall(PetscOptionsBool("-fill",
+                             "write the solid within a closed surface: its vertices and triangles stay, new vertices "
+                             "come after them (built with TetGen); with -prepare holes are filled first",
+                             "convert", options->fill, &options->fill, NULL));
+  PetscCall(PetscOptionsReal("-fill_quality",
+                             "of -fill: a tetrahedron's radius over its shortest edge, at most (above 1)", "convert",
+                             options->filling.quality, &options->filling.quality, NULL));
+  PetscCall(
+      PetscOptionsReal("-fill_volume",
+                       "of -fill: a tetrahedron's volume, at most, in those of a regular one on the surface's mean "
+                       "edge; 0: any",
+                       "convert", options->filling.volume, &options->filling.volume, NULL));
   PetscOptionsEnd();
   if (options->has_target && !EqmTargetFind(options->target))
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-target %s: there is no such map command", options->target);
-  options->prepare.target = options->has_target ? options->target : NULL;
+  if (options->fill && !options->has_target)
+    PetscCall(PetscStrncpy(options->target, "sphere", sizeof(options->target)));
+  options->prepare.target = options->has_target || options->fill ? options->target : NULL;
   options->prepare.repair = options->repair;
   PetscFunctionReturn(0);
 }
@@ -96,6 +114,7 @@ static PetscErrorCode Change(const ConvertOptions *options, EqmSoup *soup)
   PetscCall(Prepare(&options->prepare, soup));
   if (options->refine) PetscCall(EqmSoupRefine(soup, options->refine));
   if (options->boundary) PetscCall(TakeBoundary(soup));
+  if (options->fill) PetscCall(EqmSoupFill(&options->filling, soup));
   if (num_fields && !(*soup)->num_fields)
     PetscCall(PetscPrintf((*soup)->comm, "note: left out: %" PetscInt_FMT " fields, as it is another mesh now\n",
                           num_fields));
@@ -107,7 +126,7 @@ static PetscErrorCode PrintUsage(void)
   PetscFunctionBegin;
   PetscCall(PetscPrintf(
       PETSC_COMM_WORLD,
-      "\nusage: equimap convert IN OUT [-prepare LIST] [-repair] [-refine TIMES] [-scale FACTOR] [-boundary]\n"
+      "\nusage: equimap convert IN OUT [-prepare LIST] [-repair] [-refine TIMES] [-scale FACTOR] [-boundary] [-fill]\n"
       "The suffix of OUT chooses its format; IN's is seen from its content. Vertices keep their numbers; new ones\n"
       "come after them.\n"));
   PetscFunctionReturn(0);
@@ -131,6 +150,9 @@ PetscErrorCode EqmCommandConvert(const EqmCommandLine *line, EqmStatus *status)
   if (line->num_arguments != 2) {
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "convert takes two files, IN and OUT, %d given", line->num_arguments);
   }
+  if (options.fill && EqmFillMissing()) EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-fill: %s", EqmFillMissing());
+  if (!(options.filling.quality > 1.) || !(options.filling.volume >= 0.))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-fill_quality wants a number above 1, -fill_volume 0 or more");
   if (options.refine < 0)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-refine %" PetscInt_FMT ": give 0 or more", options.refine);
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &soup));

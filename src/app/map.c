@@ -7,6 +7,7 @@
 #include "intake/intake.h"
 #include "maprun.h"
 #include "pieces.h"
+#include "store/map_private.h"
 #include "store/output.h"
 #include <string.h>
 
@@ -185,6 +186,7 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
   if (status != EQM_STATUS_STOPPED) { /* there is the checkpoint */
     PetscCall(EqmMapSetImageScale(map, options->radius));
+    PetscCall(EqmMapAddPolygons(map));
     PetscCall(EqmMapWrite(map, options->output));
     PetscCall(EqmMapGetSoup(map, &soup));
     PetscCall(EqmPrintDropped(soup, options->output, PETSC_TRUE));

@@ -2,6 +2,7 @@
 
 #include <stdint.h>
 #include <string.h>
+#include <stdlib.h>
 #include <zlib.h>
 
 /* EqmBase64Length - characters that `num_bytes` bytes become, padding included. Not collective. */
@@ -117,4 +118,59 @@ PetscBool EqmInflate(const char *packed, size_t length, char *bytes, size_t num_
 PetscBool EqmInflatePlausible(size_t packed_length, size_t num_bytes)
 {
   return num_bytes / 1032 <= packed_length ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool EqmIsGzip(const char *bytes, size_t length)
+{
+  return length > 18 && (unsigned char)bytes[0] == 0x1f && (unsigned char)bytes[1] == 0x8b ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Unpack member after member into *unpacked, which grows. */
+static PetscBool UnpackMembers(z_stream *stream, char **unpacked, size_t *capacity, size_t *count)
+{
+  int outcome = Z_OK;
+
+  while (stream->avail_in || outcome == Z_OK) {
+    if (*count == *capacity) {
+      char *const larger = realloc(*unpacked, 2 * *capacity);
+
+      if (!larger) return PETSC_FALSE;
+      *unpacked = larger;
+      *capacity *= 2;
+    }
+    stream->next_out = (Bytef *)*unpacked + *count;
+    stream->avail_out = (uInt)PetscMin(*capacity - *count, (size_t)1 << 30);
+    const uInt room = stream->avail_out;
+
+    outcome = inflate(stream, Z_NO_FLUSH);
+    *count += room - stream->avail_out;
+    if (outcome == Z_STREAM_END && stream->avail_in && inflateReset(stream) == Z_OK) outcome = Z_OK;
+    if (outcome == Z_STREAM_END) return PETSC_TRUE;
+    if (outcome != Z_OK) return PETSC_FALSE;
+  }
+  return PETSC_FALSE;
+}
+
+/* EqmGunzip - replace the bytes of a gzip file, of several members perhaps, by what they hold. PETSC_FALSE: damaged,
+   cut short, of more than 4 GB packed, or there is no memory; then they are as before. Not collective. */
+PetscBool EqmGunzip(char **bytes, size_t *length)
+{
+  const int gzip = 16 + MAX_WBITS;
+  size_t capacity = 4 * *length + 4096, count = 0;
+  char *unpacked = malloc(capacity);
+  z_stream stream = {.next_in = (Bytef *)*bytes, .avail_in = (uInt)*length};
+  PetscBool fine = PETSC_FALSE;
+
+  if (unpacked && *length <= UINT32_MAX && inflateInit2(&stream, gzip) == Z_OK) {
+    fine = UnpackMembers(&stream, &unpacked, &capacity, &count);
+    (void)inflateEnd(&stream);
+  }
+  if (!fine) {
+    free(unpacked);
+    return PETSC_FALSE;
+  }
+  free(*bytes);
+  *bytes = unpacked;
+  *length = count;
+  return PETSC_TRUE;
 }

@@ -1,5 +1,6 @@
 /* The end of a mesh that was made: which cells it has, polygons cut, texture coordinates per corner. */
 #include "builder.h"
+#include "mesh/fields.h"
 
 #include <stdio.h>
 
@@ -54,6 +55,26 @@ static PetscErrorCode CompleteSurface(EqmBuilder *builder, EqmSerialMesh *mesh)
   return TakeTexture(builder, mesh);
 }
 
+/* A surface with polygons: per triangle the face of the file that it is or was cut from. The triangles of a face follow
+   each other. */
+static PetscErrorCode AddPolygons(const EqmBuilder *builder, EqmSerialMesh *mesh)
+{
+  const EqmMeshField kind = {EQM_FIELD_POLYGON, PETSC_TRUE, 1, NULL};
+  PetscReal *values, face = 0.0;
+  size_t next = 0, end = 0; /* of the polygons; of the triangles of the last one */
+
+  if (!builder->num_polygons || EqmMeshFieldsFind(mesh->num_fields, mesh->fields, EQM_FIELD_POLYGON, PETSC_TRUE))
+    return 0;
+  EqmTry(EqmMeshFieldsAdd(&mesh->num_fields, &mesh->fields, &kind, (size_t)mesh->num_cells, &values));
+  for (size_t t = 0; t < (size_t)mesh->num_cells; ++t) {
+    if (next < builder->num_polygons && builder->polygons[next].first_triangle == t)
+      end = t + (size_t)builder->polygons[next++].num_corners - 2;
+    values[t] = face;
+    if (t + 1 >= end) face += 1.0;
+  }
+  return 0;
+}
+
 static PetscErrorCode FreeLists(EqmBuilder *builder)
 {
   EqmTry(PetscFree(builder->vertices));
@@ -90,6 +111,7 @@ PetscErrorCode EqmBuilderFinish(EqmBuilder *builder, PetscErrorCode code, EqmSer
     builder->vertices = NULL;
     list->corners = NULL;
     EqmTry(EqmBuilderTakeFields(builder, mesh, list));
+    if (cell_size == 3) EqmTry(AddPolygons(builder, mesh));
     snprintf(mesh->left, sizeof(mesh->left), "%s", builder->left);
   }
   EqmTry(FreeLists(builder));

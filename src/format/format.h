@@ -63,7 +63,8 @@ PETSC_INTERN PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSeri
    commas; "" if it holds them all. is_map - it is the map that is written. Not collective. */
 PETSC_INTERN void EqmFormatDescribeDropped(const char *file, PetscBool is_map, PetscInt num_fields,
                                            const EqmMeshField *fields, char *text, size_t length);
-/* The field "group" on cells among the fields of a writer, or NULL. Not collective. */
+/* The field "polygon" or "group" on cells among the fields of a writer, or NULL. Not collective. */
+PETSC_INTERN const EqmField *EqmFieldPolygon(const EqmField *fields, PetscInt num_fields);
 PETSC_INTERN const EqmField *EqmFieldGroup(const EqmField *fields, PetscInt num_fields);
 /* The number of a cell's group as an int; 0 where there is none or it is no such number. Not collective. */
 PETSC_INTERN int EqmGroupOfCell(const EqmField *group, PetscInt cell);

@@ -9,6 +9,7 @@
   X(Vtu)                                                                                                               \
   X(Vtp)                                                                                                               \
   X(Gifti)                                                                                                             \
+  X(Xdmf)                                                                                                              \
   X(Vtk)                                                                                                               \
   X(Freesurfer)                                                                                                        \
   X(Curvature)                                                                                                         \

@@ -1,15 +1,25 @@
-/* The groups of cells among the fields that a writer gets. */
+/* The groups of cells, and the faces that they were cut from, among the fields that a writer gets. */
 #include "format.h"
 #include "mesh/fields.h"
 
 #include <string.h>
 
-const EqmField *EqmFieldGroup(const EqmField *fields, PetscInt num_fields)
+static const EqmField *Find(const EqmField *fields, PetscInt num_fields, const char *name)
 {
   for (PetscInt f = 0; f < num_fields; ++f) {
-    if (fields[f].on_cells && fields[f].width == 1 && !strcmp(fields[f].name, EQM_FIELD_GROUP)) return &fields[f];
+    if (fields[f].on_cells && fields[f].width == 1 && !strcmp(fields[f].name, name)) return &fields[f];
   }
   return NULL;
+}
+
+const EqmField *EqmFieldGroup(const EqmField *fields, PetscInt num_fields)
+{
+  return Find(fields, num_fields, EQM_FIELD_GROUP);
+}
+
+const EqmField *EqmFieldPolygon(const EqmField *fields, PetscInt num_fields)
+{
+  return Find(fields, num_fields, EQM_FIELD_POLYGON);
 }
 
 int EqmGroupOfCell(const EqmField *group, PetscInt cell)

@@ -1,4 +1,5 @@
 /* A whole file into memory. */
+#include "encoding.h"
 #include "format.h"
 #include "hdf5.h"
 
@@ -63,8 +64,8 @@ static int LoadFile(const char *file, char **bytes, size_t *length)
   return error_number;
 }
 
-/* EqmFormatLoadBytes - read a file on this rank; of an HDF5 file only the magic bytes. Not collective. `bytes` is freed
-   with free(), also after a failure. Errors: EQM_ERR_IO (quiet, reason in `error`). */
+/* EqmFormatLoadBytes - read a file on this rank, unpacked if gzip has packed it; of an HDF5 file only the magic bytes.
+   Not collective. `bytes` is freed with free(), also after a failure. Errors: EQM_ERR_IO (quiet, reason in `error`). */
 PetscErrorCode EqmFormatLoadBytes(const char *file, char **bytes, size_t *length, char *error, size_t error_length)
 {
   int error_number;
@@ -72,6 +73,10 @@ PetscErrorCode EqmFormatLoadBytes(const char *file, char **bytes, size_t *length
   *bytes = NULL;
   *length = 0;
   error_number = LoadFile(file, bytes, length);
+  if (!error_number && EqmIsGzip(*bytes, *length) && !EqmGunzip(bytes, length)) {
+    snprintf(error, error_length, "cannot read %s: what gzip has packed is damaged, cut short or too large", file);
+    return EQM_ERR_IO;
+  }
   if (!error_number && *length) return 0;
   if (error_number) {
     snprintf(error, error_length, "cannot read %s: %s", file, strerror(error_number));

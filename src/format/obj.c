@@ -5,7 +5,7 @@
 #include "mesh/fields.h"
 #include "format.h"
 #include "metadata.h"
-#include "seam.h"
+#include "writers.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -236,63 +236,10 @@ static PetscErrorCode ParseObj(const char *bytes, size_t length, EqmSerialMesh *
   return code;
 }
 
-/* A line `g name` where the group changes. */
-static void PrintGroup(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *group, PetscInt cell)
-{
-  char key[32], name[256];
-
-  if (!group || (cell > 0 && group->values[cell] == group->values[cell - 1])) return;
-  snprintf(key, sizeof(key), EQM_GROUP_KEY, (long long)group->values[cell]);
-  if (!EqmMetadataGet(mesh->metadata, key, name, sizeof(name)))
-    snprintf(name, sizeof(name), group->values[cell] == 0.0 ? "default" : "group_%lld", (long long)group->values[cell]);
-  EqmAtomicPrint(file, "g %s\n", name);
-}
-
-/* Texture points, one for each different pair of a vertex and a point, and faces that name both. */
-static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *group)
-{
-  EqmSeams seams;
-
-  EqmTry(EqmSeamsFind(mesh->num_vertices, mesh->num_cells, mesh->cells, mesh->texture, &seams));
-  for (PetscInt i = 0; i < seams.num; ++i) {
-    EqmAtomicWrite(file, "vt ", 3);
-    EqmAtomicPrintReals(file, 2, seams.point + 2 * (size_t)i, ' ');
-    EqmAtomicWrite(file, "\n", 1);
-  }
-  for (size_t i = 0; i < 3 * (size_t)mesh->num_cells; ++i) {
-    if (i % 3 == 0) PrintGroup(file, mesh, group, (PetscInt)(i / 3));
-    EqmAtomicPrint(file, "%s%lld/%lld%s", i % 3 ? " " : "f ", (long long)mesh->cells[i] + 1,
-                   (long long)seams.corner[i] + 1, i % 3 == 2 ? "\n" : "");
-  }
-  return EqmSeamsReset(&seams);
-}
-
-/* Write an OBJ file. See EqmWriter. */
-static PetscErrorCode WriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
-                               PetscInt num_fields, char *error, size_t error_length)
-{
-  const EqmField *const group = EqmFieldGroup(fields, num_fields);
-
-  EqmTry(EqmRequireTriangles(mesh, "OBJ", error, error_length));
-  for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
-    EqmAtomicWrite(file, "v ", 2);
-    EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
-    EqmAtomicWrite(file, "\n", 1);
-  }
-  if (mesh->texture) return WriteTexturedFaces(file, mesh, group);
-  for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    const PetscInt *cell = mesh->cells + 3 * (size_t)i;
-
-    PrintGroup(file, mesh, group, i);
-    EqmAtomicPrint(file, "f %lld %lld %lld\n", (long long)cell[0] + 1, (long long)cell[1] + 1, (long long)cell[2] + 1);
-  }
-  return 0;
-}
-
 EQM_DEFINE_FORMAT(Obj) = {.name = "OBJ",
                           .suffixes = "obj",
                           .recognise = RecogniseObj,
                           .parse = ParseObj,
-                          .write = WriteObj,
+                          .write = EqmWriteObj,
                           .writes_texture = PETSC_TRUE,
                           .groups = PETSC_TRUE};

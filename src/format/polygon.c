@@ -132,3 +132,36 @@ void EqmPolygonTriangulate(PetscInt num_corners, const PetscReal *corners, Petsc
     polygon.is_ear[after] = IsEar(&polygon, after);
   }
 }
+
+/* Does a triangle run through an edge the other way? */
+static PetscBool HasOpposite(PetscInt num, const PetscInt *triangles, PetscInt tail, PetscInt head)
+{
+  for (PetscInt k = 0; k < 3 * num; ++k) {
+    if (triangles[k] == head && triangles[k - k % 3 + (k + 1) % 3] == tail) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+PetscBool EqmPolygonOfTriangles(PetscInt num, const PetscInt *triangles, PetscInt *cycle)
+{
+  PetscInt edge[EQM_MAX_POLYGON][2], count = 0, length = 0;
+
+  for (PetscInt k = 0; k < 3 * num; ++k) {
+    const PetscInt tail = triangles[k], head = triangles[k - k % 3 + (k + 1) % 3];
+
+    if (HasOpposite(num, triangles, tail, head)) continue;
+    if (count == num + 2) return PETSC_FALSE;
+    edge[count][0] = tail;
+    edge[count++][1] = head;
+  }
+  if (count != num + 2) return PETSC_FALSE;
+  for (PetscInt e = 0; length < count;) {
+    PetscInt next = 0;
+
+    cycle[length++] = edge[e][0];
+    while (next < count && edge[next][0] != edge[e][1]) ++next;
+    if (next == count || (next == 0 && length < count)) return PETSC_FALSE;
+    e = next;
+  }
+  return PETSC_TRUE;
+}

@@ -83,6 +83,7 @@ static PetscBool Holds(const EqmFormat *format, PetscBool is_map, const EqmMeshF
   if (format->write_parallel) return PETSC_TRUE;                        /* HDF5 */
   if (!strcmp(field->name, EQM_FIELD_TEXTURE) && field->on_cells && format->writes_texture)
     return is_map ? PETSC_FALSE : PETSC_TRUE;
+  if (!strcmp(field->name, EQM_FIELD_POLYGON) && field->on_cells) return PETSC_TRUE; /* the reader's, not the file's */
   if (!strcmp(field->name, EQM_FIELD_GROUP) && field->on_cells && format->groups) return PETSC_TRUE;
   return field->on_cells ? format->cell_fields : format->vertex_fields;
 }

@@ -15,4 +15,7 @@ PETSC_INTERN PetscErrorCode EqmWriteGifti(EqmAtomicFile *file, const EqmSerialMe
 PETSC_INTERN PetscErrorCode EqmWriteGmsh(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                          PetscInt num_fields, char *error, size_t error_length);
 
+PETSC_INTERN PetscErrorCode EqmWriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
+                                        PetscInt num_fields, char *error, size_t error_length);
+
 #endif

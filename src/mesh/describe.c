@@ -215,8 +215,9 @@ static PetscErrorCode AppendWrongCells(const EqmDiagnosis *diagnosis, const Pets
 
   PetscFunctionBegin;
   if (diagnosis->cell_size == 3 && wants_solid) {
-    line = "the mesh is a surface of triangles, a solid of tetrahedra is wanted: fill it with a mesh generator such as "
-           "TetGen or Gmsh, or map it as a surface";
+    line =
+        "the mesh is a surface of triangles, a solid of tetrahedra is wanted: fill it (convert -fill), or take a mesh "
+        "generator such as Gmsh, or map it as a surface";
   }
   if (diagnosis->cell_size == 4 && wants_surface) {
     line =

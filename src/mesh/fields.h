@@ -8,6 +8,8 @@
 #define EQM_FIELD_TEXTURE "texcoord"
 /* The number of the group (Gmsh's physical group, Medit's reference, OBJ's g) that a cell belongs to. */
 #define EQM_FIELD_GROUP "group"
+/* The number of the file's face that a triangle was cut from, where some faces have more than three corners. */
+#define EQM_FIELD_POLYGON "polygon"
 
 /* Append a field like `kind`, with room for `rows` rows, which the caller fills in. Not collective. */
 PETSC_INTERN PetscErrorCode EqmMeshFieldsAdd(PetscInt *num_fields, EqmMeshField **fields, const EqmMeshField *kind,

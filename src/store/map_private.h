@@ -66,4 +66,7 @@ struct _p_EqmMap {
   EqmMapFigure *figures;
 };
 
+/* Where the input has faces of more than three corners: /polygon/ratio, the ratio of each of its faces. Collective. */
+PETSC_INTERN PetscErrorCode EqmMapAddPolygons(EqmMap map);
+
 #endif
