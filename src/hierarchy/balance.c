@@ -39,16 +39,13 @@ PetscErrorCode EqmTutteLevel(EqmLevelMap *map)
   for (PetscInt v = 0; v < level->num_vertices; v++) count[v] = level->part[v] == EQM_INSIDE;
   PetscCall(EqmLevelSystemCreate(level, count, &system));
   for (PetscInt axis = 0; axis < 2; axis++) {
-    const PetscReal *solution;
     PetscCall(EqmLevelSystemClear(&system));
     for (PetscInt c = 0; c < level->num_cells; c++) AddTutteCell(map, count, axis, c, &system);
-    PetscCall(EqmLevelSystemShift(&system, 0.));
-    PetscCall(EqmLevelSystemFactorSolve(&system, &success));
-    PetscCall(VecGetArrayRead(system.solution, &solution));
+    PetscCall(EqmLevelSystemEnd(&system, 0., &success));
+    if (success) PetscCall(EqmLevelSystemFactorSolve(&system, &success));
     for (PetscInt v = 0; v < level->num_vertices && success; v++) {
-      if (count[v]) map->x[2 * v + axis] = solution[system.first[v]];
+      if (count[v]) map->x[2 * v + axis] = system.solution[2 * v];
     }
-    PetscCall(VecRestoreArrayRead(system.solution, &solution));
   }
   PetscCall(EqmLevelSystemDestroy(&system));
   PetscCall(PetscFree(count));
@@ -144,8 +141,8 @@ typedef struct {
   PetscReal *trial[2], damping, tolerance;
 } Newton;
 
-/* The matrix at the present map. */
-static PetscErrorCode Assemble(Newton *newton, PetscReal residual)
+/* The matrix at the present map. `success` is false where it is not definite. */
+static PetscErrorCode Assemble(Newton *newton, PetscReal residual, PetscBool *success)
 {
   const PetscReal floor = .3 * PetscSqrtReal(residual), shift = 1e-10;
   EqmCellSystem s;
@@ -156,7 +153,7 @@ static PetscErrorCode Assemble(Newton *newton, PetscReal residual)
     EqmBalanceCell(newton->map, c, newton->damping, floor, &s);
     EqmLevelSystemAdd(&newton->system, c, s.matrix, s.right);
   }
-  PetscCall(EqmLevelSystemShift(&newton->system, shift));
+  PetscCall(EqmLevelSystemEnd(&newton->system, shift, success));
   PetscFunctionReturn(0);
 }
 
@@ -168,40 +165,21 @@ static void CountUnknowns(const EqmLevelMap *map, unsigned char *count)
     count[v] = (unsigned char)EqmMotionFrame((EqmMotion)map->motion[v], map->x + map->dim * v, frame);
 }
 
-/* The first unknown of each vertex of a level and, last, their number. */
-static PetscErrorCode NumberUnknowns(const EqmLevelMap *map, PetscInt **first)
-{
-  const PetscInt n = map->level->num_vertices;
-  unsigned char *count;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(n, &count));
-  PetscCall(PetscMalloc1(n + 1, first));
-  CountUnknowns(map, count);
-  (*first)[0] = 0;
-  for (PetscInt v = 0; v < n; v++) (*first)[v + 1] = (*first)[v] + count[v];
-  PetscCall(PetscFree(count));
-  PetscFunctionReturn(0);
-}
-
 /* Solve by multigrid, with prolongations at the present map. */
 static PetscErrorCode MultigridSolve(Newton *newton, PetscBool *success)
 {
-  PetscInt *first[EQM_MOST_LEVELS], iterations;
-  Mat prolongation[EQM_MOST_LEVELS];
+  PetscInt iterations;
+  EqmProlongation prolongation[EQM_MOST_LEVELS];
 
   PetscFunctionBegin;
-  PetscCall(NumberUnknowns(newton->map, &first[0]));
   for (PetscInt k = 0; k < newton->coarser; k++) {
     EqmLevelMap *const map = newton->map + k;
     PetscCall(EqmLevelMapRestrict(map, map + 1));
-    PetscCall(NumberUnknowns(map + 1, &first[k + 1]));
-    PetscCall(EqmProlongationCreate(map, map + 1, first[k], first[k + 1], &prolongation[k]));
+    PetscCall(EqmProlongationCreate(map, map + 1, &prolongation[k]));
   }
   PetscCall(EqmLevelSystemMultigridSolve(&newton->system, newton->coarser, prolongation, newton->tolerance, &iterations,
                                          success));
-  for (PetscInt k = 0; k < newton->coarser; k++) PetscCall(MatDestroy(&prolongation[k]));
-  for (PetscInt k = 0; k <= newton->coarser; k++) PetscCall(PetscFree(first[k]));
+  for (PetscInt k = 0; k < newton->coarser; k++) PetscCall(EqmProlongationDestroy(&prolongation[k]));
   PetscFunctionReturn(0);
 }
 
@@ -210,22 +188,20 @@ static PetscErrorCode Move(const Newton *newton, PetscReal t, PetscReal *to)
 {
   const EqmLevelMap *const map = newton->map;
   const PetscInt dim = map->dim;
-  const PetscReal *step;
+  const PetscReal *const step = newton->system.solution;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(newton->system.solution, &step));
   for (PetscInt v = 0; v < map->level->num_vertices; v++) {
     const EqmMotion motion = (EqmMotion)map->motion[v];
     PetscReal frame[6];
     const PetscInt count = EqmMotionFrame(motion, map->x + dim * v, frame);
     for (PetscInt c = 0; c < dim; c++) {
       PetscReal d = 0.;
-      for (PetscInt k = 0; k < count; k++) d += step[newton->system.first[v] + k] * frame[dim * k + c];
+      for (PetscInt k = 0; k < count; k++) d += step[2 * v + k] * frame[dim * k + c];
       to[dim * v + c] = map->x[dim * v + c] + t * d;
     }
     EqmRetract(motion, to + dim * v);
   }
-  PetscCall(VecRestoreArrayRead(newton->system.solution, &step));
   PetscFunctionReturn(0);
 }
 
@@ -287,10 +263,10 @@ PetscErrorCode EqmBalanceLevel(EqmLevelMap *map, PetscInt coarser, const EqmBala
     const PetscReal before = value.objective;
     PetscReal t = 0.;
     PetscBool success;
-    PetscCall(Assemble(&newton, value.residual));
-    if (coarser > 0)
+    PetscCall(Assemble(&newton, value.residual, &success));
+    if (success && coarser > 0)
       PetscCall(MultigridSolve(&newton, &success));
-    else
+    else if (success)
       PetscCall(EqmLevelSystemFactorSolve(&newton.system, &success));
     if (success) PetscCall(Search(&newton, &value, &t));
     newton.damping = NextDamping(newton.damping, t);

@@ -1,7 +1,7 @@
 /* From motions of a coarser level to those of a finer one. */
 #include "hierarchy/prolongation.h"
 
-enum { WIDTH = 3, MOST_CANDIDATES = 10, MOST_SEEN = WIDTH * EQM_MOST_RECORD };
+enum { WIDTH = EQM_PROLONGATION_WIDTH, MOST_CANDIDATES = 10, MOST_SEEN = WIDTH * EQM_MOST_RECORD };
 
 /* Coarse vertices, by their numbers on the finer level, and their weights. */
 typedef struct {
@@ -147,44 +147,71 @@ static PetscErrorCode MakeRows(const EqmLevelMap *finer, const EqmLevelMap *coar
 
 /* A fine vertex's entries: the weight times the product of the frames; along the boundary the weight alone, so that a
    rotation comes out exact. */
-static PetscErrorCode SetRows(const EqmLevelMap *map, PetscInt v, const Row *row, const PetscInt *number,
-                              const PetscInt *first_finer, const PetscInt *first_coarser, Mat prolongation)
+static void SetRow(const EqmLevelMap *map, PetscInt v, const Row *row, const PetscInt *number, PetscInt *column,
+                   EqmBlock *entry)
 {
   PetscReal to[6], from[6];
   const PetscInt dim = map->dim, count = EqmMotionFrame((EqmMotion)map->motion[v], map->x + dim * v, to);
 
-  PetscFunctionBegin;
-  for (PetscInt j = 0; j < row->count; j++) {
-    const PetscInt u = row->vertex[j], moves = EqmMotionFrame((EqmMotion)map->motion[u], map->x + dim * u, from);
+  for (PetscInt j = 0; j < WIDTH; j++) {
+    const PetscInt u = j < row->count ? row->vertex[j] : -1;
+    const PetscInt moves = u < 0 ? 0 : EqmMotionFrame((EqmMotion)map->motion[u], map->x + dim * u, from);
+    column[j] = u < 0 ? -1 : number[u];
+    entry[j] = (EqmBlock){{0., 0., 0., 0.}};
     for (PetscInt k = 0; k < count; k++) {
       for (PetscInt l = 0; l < moves; l++) {
         PetscReal product = 0.;
         for (PetscInt c = 0; c < dim; c++) product += to[dim * k + c] * from[dim * l + c];
-        if (count == 1) product = 1.;
-        PetscCall(MatSetValue(prolongation, first_finer[v] + k, first_coarser[number[u]] + l, row->weight[j] * product,
-                              INSERT_VALUES));
+        entry[j].e[2 * k + l] = row->weight[j] * (count == 1 ? 1. : product);
       }
     }
+  }
+}
+
+/* By columns, too. */
+static PetscErrorCode Transpose(EqmProlongation *p)
+{
+  const PetscInt length = WIDTH * p->num_fine;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(p->num_coarse + 2, &p->start));
+  for (PetscInt q = 0; q < length; q++) {
+    if (p->column[q] >= 0) p->start[p->column[q] + 2]++;
+  }
+  for (PetscInt j = 0; j < p->num_coarse; j++) p->start[j + 2] += p->start[j + 1];
+  PetscCall(PetscMalloc1(p->start[p->num_coarse + 1], &p->from));
+  for (PetscInt q = 0; q < length; q++) {
+    if (p->column[q] >= 0) p->from[p->start[p->column[q] + 1]++] = q;
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap *coarser, const PetscInt *first_finer,
-                                     const PetscInt *first_coarser, Mat *prolongation)
+PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap *coarser, EqmProlongation *p)
 {
   const PetscInt n = finer->level->num_vertices, m = coarser->level->num_vertices;
   PetscInt *number;
   Row *rows;
 
   PetscFunctionBegin;
+  p->num_fine = n;
+  p->num_coarse = m;
   PetscCall(PetscMalloc2(n, &number, n, &rows));
+  PetscCall(PetscMalloc1(WIDTH * n, &p->column));
+  PetscCall(PetscMalloc1(WIDTH * n, &p->entry));
   for (PetscInt c = 0; c < m; c++) number[coarser->level->finer[c]] = c;
   PetscCall(MakeRows(finer, coarser, rows));
-  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, first_finer[n], first_coarser[m], 2 * WIDTH, NULL, prolongation));
-  for (PetscInt v = 0; v < n; v++)
-    PetscCall(SetRows(finer, v, &rows[v], number, first_finer, first_coarser, *prolongation));
-  PetscCall(MatAssemblyBegin(*prolongation, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*prolongation, MAT_FINAL_ASSEMBLY));
+  for (PetscInt v = 0; v < n; v++) SetRow(finer, v, &rows[v], number, p->column + WIDTH * v, p->entry + WIDTH * v);
   PetscCall(PetscFree2(number, rows));
+  PetscCall(Transpose(p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmProlongationDestroy(EqmProlongation *p)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(p->column));
+  PetscCall(PetscFree(p->entry));
+  PetscCall(PetscFree(p->start));
+  PetscCall(PetscFree(p->from));
   PetscFunctionReturn(0);
 }

@@ -1,15 +1,31 @@
 #ifndef EQM_PROLONGATION_H
 #define EQM_PROLONGATION_H
 
-#include <petscmat.h>
+#include "hierarchy/blockmatrix.h"
 #include "hierarchy/levelmap.h"
 
-/* The matrix that takes motions of a coarser level's vertices to those of the next finer one's, in the directions that
-   each has (EqmMotionFrame), three coarse vertices at most for each fine one. They are taken in the image, where a fine
-   vertex is their mean with positive weights: affine motions of the plane and rotations of the sphere come out exact.
-   The places of the coarser map must be those of the finer one. Not collective. */
+enum { EQM_PROLONGATION_WIDTH = 3 };
+
+/* What takes motions of a coarser level's vertices to those of the next finer one's, in the directions that each has
+   (EqmMotionFrame), three coarse vertices at most for each fine one. They are taken in the image, where a fine vertex
+   is their mean with positive weights: affine motions of the plane and rotations of the sphere come out exact. */
+typedef struct {
+  PetscInt num_fine, num_coarse;
+  PetscInt *column;       /* EQM_PROLONGATION_WIDTH per fine vertex: coarse vertices; -1: none */
+  EqmBlock *entry;        /* for each of these */
+  PetscInt *start, *from; /* per coarse vertex: which of these are its */
+} EqmProlongation;
+
+/* The places of the coarser map must be those of the finer one. Not collective. */
 PETSC_INTERN PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap *coarser,
-                                                  const PetscInt *first_finer, const PetscInt *first_coarser,
-                                                  Mat *prolongation);
+                                                  EqmProlongation *prolongation);
+PETSC_INTERN PetscErrorCode EqmProlongationDestroy(EqmProlongation *prolongation);
+/* fine += P coarse, and coarse = P^T fine; two numbers per vertex. Not collective. */
+PETSC_INTERN void EqmProlongationAdd(const EqmProlongation *prolongation, const PetscReal *coarse, PetscReal *fine);
+PETSC_INTERN void EqmProlongationRestrict(const EqmProlongation *prolongation, const PetscReal *fine,
+                                          PetscReal *coarse);
+/* P^T A P. Not collective. */
+PETSC_INTERN PetscErrorCode EqmProlongationGalerkin(const EqmProlongation *prolongation, const EqmBlockMatrix *fine,
+                                                    EqmBlockMatrix *coarse);
 
 #endif

@@ -1,0 +1,79 @@
+/* Square matrices of 2 x 2 blocks in compressed rows: a block for two vertices that share a triangle. A vertex with
+   fewer unknowns than two has ones on the diagonal in their place, and nothing beside it. The kernels run on the
+   threads; every number is the same for any number of them. */
+#ifndef EQM_BLOCKMATRIX_H
+#define EQM_BLOCKMATRIX_H
+
+#include <petscksp.h>
+
+/* By rows: (0, 0), (0, 1), (1, 0), (1, 1). */
+typedef struct {
+  PetscReal e[4];
+} EqmBlock;
+
+typedef struct {
+  PetscInt num_rows;
+  PetscInt *start, *column;  /* num_rows + 1; start[num_rows] */
+  PetscInt *diagonal;        /* per row: where its diagonal block is */
+  EqmBlock *entry, *inverse; /* start[num_rows]; per row: the diagonal block's inverse, NULL until it is asked for */
+} EqmBlockMatrix;
+
+PETSC_INTERN PetscErrorCode EqmBlockMatrixReset(EqmBlockMatrix *matrix);
+/* y = A x; vectors have two numbers per row. Not collective. */
+PETSC_INTERN void EqmBlockMatrixMultiply(const EqmBlockMatrix *matrix, const PetscReal *x, PetscReal *y);
+/* r = b - A x. Not collective. */
+PETSC_INTERN void EqmBlockMatrixResidual(const EqmBlockMatrix *matrix, const PetscReal *b, const PetscReal *x,
+                                         PetscReal *r);
+/* Ones in the place of unknowns that are not there, then the inverses of the diagonal blocks. `success` is false where
+   one is not positive definite. Not collective. */
+PETSC_INTERN PetscErrorCode EqmBlockMatrixInvertDiagonal(EqmBlockMatrix *matrix, PetscBool *success);
+/* One Gauss-Seidel sweep from zero within pieces of consecutive rows, whose number depends on the matrix alone: x =
+   M^-1 b with the lower triangles of the pieces, or with the upper ones, the transpose. Not collective. */
+PETSC_INTERN void EqmBlockMatrixSweepForward(const EqmBlockMatrix *matrix, const PetscReal *b, PetscReal *x);
+PETSC_INTERN void EqmBlockMatrixSweepBackward(const EqmBlockMatrix *matrix, const PetscReal *b, PetscReal *x);
+
+/* PETSc's own Cholesky factor of such a matrix, for some thousand rows. */
+typedef struct {
+  PetscInt *row, *column;
+  PetscReal *value;
+  Mat matrix;
+  KSP ksp;
+} EqmBlockFactor;
+/* `success` is false where the matrix is not positive definite. Not collective. */
+PETSC_INTERN PetscErrorCode EqmBlockFactorCreate(const EqmBlockMatrix *matrix, EqmBlockFactor *factor,
+                                                 PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmBlockFactorDestroy(EqmBlockFactor *factor);
+PETSC_INTERN PetscErrorCode EqmBlockFactorSolve(const EqmBlockFactor *factor, PetscReal *b, PetscReal *x,
+                                                PetscBool *success);
+
+/* c += a b, and c += a^T b. */
+static inline void EqmBlockAddProduct(const EqmBlock *a, const EqmBlock *b, EqmBlock *c)
+{
+  c->e[0] += a->e[0] * b->e[0] + a->e[1] * b->e[2];
+  c->e[1] += a->e[0] * b->e[1] + a->e[1] * b->e[3];
+  c->e[2] += a->e[2] * b->e[0] + a->e[3] * b->e[2];
+  c->e[3] += a->e[2] * b->e[1] + a->e[3] * b->e[3];
+}
+
+static inline void EqmBlockAddTransposedProduct(const EqmBlock *a, const EqmBlock *b, EqmBlock *c)
+{
+  c->e[0] += a->e[0] * b->e[0] + a->e[2] * b->e[2];
+  c->e[1] += a->e[0] * b->e[1] + a->e[2] * b->e[3];
+  c->e[2] += a->e[1] * b->e[0] + a->e[3] * b->e[2];
+  c->e[3] += a->e[1] * b->e[1] + a->e[3] * b->e[3];
+}
+
+/* y += a x, and y += a^T x. */
+static inline void EqmBlockAddApplied(const EqmBlock *a, const PetscReal *x, PetscReal y[2])
+{
+  y[0] += a->e[0] * x[0] + a->e[1] * x[1];
+  y[1] += a->e[2] * x[0] + a->e[3] * x[1];
+}
+
+static inline void EqmBlockAddTransposedApplied(const EqmBlock *a, const PetscReal *x, PetscReal y[2])
+{
+  y[0] += a->e[0] * x[0] + a->e[2] * x[1];
+  y[1] += a->e[1] * x[0] + a->e[3] * x[1];
+}
+
+#endif
