@@ -16,9 +16,10 @@ typedef enum { EQM_BOUNDARY_AUTO, EQM_BOUNDARY_HELD, EQM_BOUNDARY_FREE } EqmRegi
 typedef enum { EQM_POINTS_AUTO, EQM_POINTS_SURFACE, EQM_POINTS_TARGET } EqmLandmarkPoints;
 
 typedef struct {
-  char landmarks[PETSC_MAX_PATH_LEN], map_a[PETSC_MAX_PATH_LEN], map_b[PETSC_MAX_PATH_LEN],
-      density_a[PETSC_MAX_PATH_LEN], density_b[PETSC_MAX_PATH_LEN], transfer[PETSC_MAX_PATH_LEN],
-      checkpoint[PETSC_MAX_PATH_LEN], restart[PETSC_MAX_PATH_LEN];
+  char landmarks[PETSC_MAX_PATH_LEN], curves_a[PETSC_MAX_PATH_LEN], curves_b[PETSC_MAX_PATH_LEN],
+      map_a[PETSC_MAX_PATH_LEN], map_b[PETSC_MAX_PATH_LEN], density_a[PETSC_MAX_PATH_LEN],
+      density_b[PETSC_MAX_PATH_LEN], transfer[PETSC_MAX_PATH_LEN], checkpoint[PETSC_MAX_PATH_LEN],
+      restart[PETSC_MAX_PATH_LEN];
   PetscBool has_landmarks, repair, quiet;
   EqmRegisterBy by;
   EqmLandmarkStart start;
@@ -120,6 +121,9 @@ PETSC_INTERN PetscErrorCode EqmRegistrationMinimise(EqmRegistration r, EqmSolver
 /* Between two steps of the registration: has a stop been requested, or, with `clock`, is -wall_time over? Then
    r->status becomes EQM_STATUS_STOPPED and the remaining steps are skipped. Only with -checkpoint. Collective. */
 PETSC_INTERN PetscErrorCode EqmRegistrationCheckStop(EqmRegistration r, PetscBool clock);
+/* ---- curves.c */
+/* Curves of -curves_a and -curves_b become landmarks, points of B. Errors: EQM_ERR_USAGE, EQM_ERR_IO. Collective. */
+PETSC_INTERN PetscErrorCode EqmAddCurves(EqmRegistration r);
 /* ---- goals.c */
 /* Check landmarks before the maps are computed. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmCheckLandmarks(EqmRegistration r);

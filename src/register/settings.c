@@ -15,6 +15,15 @@ static PetscErrorCode ReadLandmarkOptions(EqmRegisterSettings *set, PetscOptionI
                          "corresponding points, CSV with a header: per line a vertex of A and a vertex of B, or a "
                          "vertex of A and the coordinates of a point (vertices count from 0)",
                          NULL, "", set->landmarks, sizeof(set->landmarks), &set->has_landmarks));
+  PetscCall(PetscOptionsString("-curves_a",
+                               "feature curves of A, CSV with a header: per line the curve's number and a vertex, in "
+                               "their order along the curve; with -curves_b",
+                               NULL, "", set->curves_a, sizeof(set->curves_a), NULL));
+  PetscCall(
+      PetscOptionsString("-curves_b",
+                         "the curves of B that those of A should go to: the same numbers, from the same end, with "
+                         "as many vertices as they like",
+                         NULL, "", set->curves_b, sizeof(set->curves_b), NULL));
   PetscCall(PetscOptionsEnum("-landmark_points",
                              "what points are: of B's surface (the closest point is taken) or of the unit disk or "
                              "sphere; auto: of the target where they all lie in it",

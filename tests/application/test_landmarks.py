@@ -60,6 +60,43 @@ def check_curves(program, vertices):
     assert b"stroke-dasharray" in program.read("curves.svg") and b"stroke-dasharray" not in program.read("points.svg")
 
 
+def adjacent_path(vertices, cells, start, steps):
+    """A way along edges, always to the neighbour that is farthest in the direction of x."""
+    way = [start]
+    for _ in range(steps):
+        near = numpy.unique(cells[(cells == way[-1]).any(axis=1)])
+        way.append(int(near[vertices[near, 0].argmax()]))
+    return way
+
+
+def check_polylines(program, vertices, cells):
+    """The same curve with twice as many vertices on a refined copy: each vertex of A's goes to where it is itself."""
+    program.succeed("convert", "hills.obj", "fine.obj", "-refine", 1, ranks=1)
+    fine, _ = read_obj(program.file("fine.obj"))
+    middle = numpy.argsort(vertices[:, 0])[len(vertices) // 3]
+    ways = [adjacent_path(vertices, cells, middle, 5), adjacent_path(vertices, cells, numpy.argsort(vertices[:, 0])[len(vertices) // 4], 4)]
+    places = [numpy.array([vertices[way[k // 2]] if k % 2 == 0 else (vertices[way[k // 2]] + vertices[way[k // 2 + 1]]) / 2
+                           for k in range(2 * len(way) - 1)]) for way in ways]
+    numbers = [[int(numpy.linalg.norm(fine - place, axis=1).argmin()) for place in line] for line in places]
+    for name, lists in (("a", ways), ("b", numbers)):
+        program.write(name + ".csv", "curve,vertex\n" + "".join(f"{c},{v}\n" for c, line in enumerate(lists) for v in line))
+    program.write("one.csv", f"a,b\n{ways[0][2]},{numbers[0][4]}\n")
+    program.succeed("register", "hills.h5", "fine.obj", "-curves_a", "a.csv", "-curves_b", "b.csv", "-landmarks", "one.csv", "-o",
+                    "lines.h5", "-quiet", codes=(0, 4))
+    with h5py.File(program.file("lines.h5")) as file:
+        kept = {key: value[...] for key, value in file["/register/landmarks"].items()}
+    listed = [ways[0][2], *(v for way in ways for v in way if v != ways[0][2])]
+    expected = list(dict.fromkeys(listed))
+    assert kept["vertex"].tolist() == expected, (kept["vertex"], expected)
+    assert abs(kept["point"] - vertices[expected]).max() < 1e-12 * abs(vertices).max()
+    assert kept["curve"][0] == -1 and set(kept["curve"][1:].tolist()) == {0, 1}
+    for name, text, words in (("short", "curve,vertex\n0,5\n", "no length"), ("strange", "curve,vertex\n0,5\n0,99999\n", "vertex 99999"),
+                              ("other", "curve,vertex\n7,5\n7,6\n", "none of that number")):
+        program.write(name + ".csv", text)
+        result = program.run("register", "hills.h5", "fine.obj", "-curves_a", "a.csv", "-curves_b", name + ".csv", "-o", "no.h5", "-quiet")
+        assert result.returncode == 2 and words in result.stderr, (name, result.stderr)
+
+
 def check_refused(program):
     for name, text, words in (("zero", "a,b,weight\n3,4,0\n", "weight 0"), ("half", "a,b,curve\n3,4,1.5\n", "curve 1.5"),
                               ("order", "a,weight,b,x,y\n3,4,1,1,1\n", "a landmark is a vertex"),
@@ -74,9 +111,10 @@ def main(program):
     program.succeed("generate", "hills", "-n", 700, "-o", "hills.obj", ranks=1)
     program.succeed("disk", "hills.obj", "-o", "hills.h5", "-quiet", "-ratio_tol", "3e-3", "-summary", "hills.json", ranks=1)
     assert json.loads(program.read("hills.json"))["folds"] == 0
-    vertices, _ = read_obj(program.file("hills.obj"))
+    vertices, cells = read_obj(program.file("hills.obj"))
     check_weights(program, vertices)
     check_curves(program, vertices)
+    check_polylines(program, vertices, cells)
     check_refused(program)
     print("landmarks: weights, curves, refusals: fine")
 
