@@ -115,6 +115,8 @@ static const EqmFormulation formulations[] = {
      .unfold = EqmSphereUnfold,
      .unfold_as_printed = EqmSphereUnfoldAsPrinted,
      .finish = EqmConformalFinish,
+     .where_limbs_fold =
+         " try the default method and its start, or with this method -start resolved, which keeps thin limbs wide",
      .starts = EQM_STARTS_SPHERE,
      METHODS(conformal_on_sphere)},
     {.target = "ball",

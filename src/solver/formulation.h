@@ -30,7 +30,8 @@ typedef struct {
   EqmStartFamily starts;
   const char *other_starts; /* tried one after the other where the default's leads far from the objective; NULL: none */
   PetscReal far_energy;     /* per measure of the image: where the map's is above it they are tried */
-  PetscBool takes_balance;  /* -balance has a meaning */
+  const char *where_limbs_fold;     /* what to try there, unless the start was `resolved`; NULL: nothing special */
+  PetscBool takes_balance;          /* -balance has a meaning */
   const EqmMethodDefaults *methods; /* the first is -method auto */
   PetscInt num_methods;
 } EqmFormulation;

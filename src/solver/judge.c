@@ -186,12 +186,21 @@ PetscErrorCode EqmJudgePoor(EqmSolver solver)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmJudgeFolds(EqmSolver solver)
+/* What may do without folds: better cells where this is the default, else the default, or a start that is for it. */
+static const char *WhatMayHelp(EqmSolver solver)
 {
   const EqmMethodDefaults *const first = &solver->formulation->methods[0];
+  const char *const limbs = solver->formulation->where_limbs_fold;
+
+  if (!strcmp(solver->defaults.name, first->name) && !strcmp(solver->start->name, first->start))
+    return " cells of a better shape, or finer ones, may help";
+  if (limbs && strcmp(solver->start->name, EqmStartSphereResolved.name)) return limbs;
+  return " try the default method and its start";
+}
+
+PetscErrorCode EqmJudgeFolds(EqmSolver solver)
+{
   const PetscBool solid = (PetscBool)(solver->mesh->cell_size == 4);
-  const PetscBool is_default =
-      (PetscBool)(!strcmp(solver->defaults.name, first->name) && !strcmp(solver->start->name, first->start));
   PetscInt64 on_boundary = 0;
 
   PetscFunctionBegin;
@@ -210,9 +219,6 @@ PetscErrorCode EqmJudgeFolds(EqmSolver solver)
   } else {
     PetscCall(PetscStrlcat(solver->message, ";", sizeof(solver->message)));
   }
-  PetscCall(PetscStrlcat(solver->message,
-                         is_default ? " cells of a better shape, or finer ones, may help"
-                                    : " try the default method and its start",
-                         sizeof(solver->message)));
+  PetscCall(PetscStrlcat(solver->message, WhatMayHelp(solver), sizeof(solver->message)));
   PetscFunctionReturn(0);
 }

@@ -68,6 +68,17 @@ def check_strips(program):
     assert result.returncode == 4 and summary["folds"] == 0 and "long and narrow" in summary["message"], summary["message"]
 
 
+def check_limbs(program):
+    """Folds of the published method in thin limbs are told, with what to do about them, which does it."""
+    program.succeed("generate", "starfish", "-n", 900, "-o", "star.obj", ranks=1)
+    arguments = ("conformal", "star.obj", "-method", "qiem", "-o", "star.h5", "-quiet", "-summary", "star.json")
+    program.succeed(*arguments, "-start", "normals", "-max_it", 1, "-unfold", "none", codes=(5,))
+    summary = json.loads(program.read("star.json"))
+    assert summary["folds"] > 0 and "-start resolved" in summary["message"], summary["message"]
+    program.succeed(*arguments, "-start", "resolved", codes=(0, 4))
+    assert json.loads(program.read("star.json"))["folds"] == 0
+
+
 def main():
     with tempfile.TemporaryDirectory() as directory:
         program = Program(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 1, directory)
@@ -97,6 +108,7 @@ def main():
             for name, value in measured[group].items():
                 assert abs(value - summary[group][name]) <= 1e-12 * value, (group, name)
         check_strips(program)
+        check_limbs(program)
         print(f"conformal: mean angle error {summary['angle_error_deg']['mean']:.3f} degrees, {summary['work']['solves']} solves")
 
 
