@@ -113,6 +113,24 @@ def test_hole_weight(program):
     assert 0.02 < share[0] < 0.08 and share[1] < 0.15 * share[0], share
 
 
+def test_hole_weight_on_sphere(program):
+    """A sheet becomes a sphere whose filled outside weighs little; the areas of the sheet itself are kept."""
+    points, cells = sheet()
+    write_obj(program, "sheet.obj", points, cells)
+    share = []
+    for weight in ("1", ".05"):
+        program.succeed("sphere", "sheet.obj", "-prepare", "auto", "-hole_weight", weight, "-o", "sheet.h5", "-summary", "sheet.json", "-quiet")
+        with open("sheet.json") as file:
+            summary = json.load(file)
+        assert summary["folds"] == 0 and summary["ratio_weighted"]["sd"] < 0.02 and not summary["poor"], summary["ratio_weighted"]
+        with h5py.File("sheet.h5") as file:
+            place, whole, added = file["repaired/coordinates"][:], file["repaired/cells"][:], file["repaired/parent"][:] < 0
+        area = abs(numpy.linalg.norm(numpy.cross(place[whole[:, 1]] - place[whole[:, 0]], place[whole[:, 2]] - place[whole[:, 0]]), axis=1))
+        assert (numpy.linalg.det(place[whole]) > 0).all()
+        share.append(area[added].sum() / area.sum())
+    assert share[0] > 0.3 and share[1] < 0.1 * share[0], share
+
+
 def test_seam(program):
     """A torn sheet is sewn; both sides of the seam get the same image. A cut that makes a disk is left alone."""
     points, cells = sheet(seam=7)
@@ -178,6 +196,7 @@ def test_usage(program):
 def main(program):
     test_scan(program)
     test_hole_weight(program)
+    test_hole_weight_on_sphere(program)
     test_seam(program)
     test_handle(program)
     test_usage(program)

@@ -18,6 +18,7 @@ from program import Program  # noqa: E402
 # Per page what its user has: shape, vertices, seed, name.
 MESHES = {
     "brains.md": [("head", 700, 1, "lh.white"), ("head", 700, 2, "other.lh.white"), ("head", 700, 1, "S.L.midthickness.surf.gii")],
+    "solids.md": [("head", 300, 1, "segment.stl"), ("blob", 400, 2, "other.h5")],
     "textures.md": [("hills", 500, 1, "scan.obj"), ("head", 500, 1, "model.obj")],
 }
 
@@ -36,7 +37,7 @@ def prepare(program, page):
         program.succeed("generate", shape, "-n", vertices, "-seed", seed, "-o", name)
     if page == "brains.md":  # FreeSurfer's sphere: the same triangles as lh.white's
         program.succeed("sphere", "lh.white", "-o", "lh.sphere", "-method", "fixed-point", "-quiet", codes=(0, 4))
-    else:  # another program's texture
+    if page == "textures.md":  # another program's texture
         program.succeed("conformal", "scan.obj", "-o", "other.h5", "-uv", "textured.obj", "-quiet", codes=(0, 4))
 
 
@@ -50,7 +51,9 @@ def main():
                 first, *rest = shlex.split(line)
                 if first == "wb_command" and not shutil.which(first):
                     continue
-                if first == "equimap":
+                if "-fill" in rest and "built without TetGen" in program.run(*rest).stderr:  # what it would have made
+                    program.succeed("generate", "blob", "-n", 400, "-o", "solid.h5")
+                elif first == "equimap":
                     program.succeed(*rest, codes=(0, 4))
                 else:
                     subprocess.run([first, *rest], cwd=folder, check=True, stdout=subprocess.DEVNULL)
