@@ -76,6 +76,7 @@ def arguments():
     parser.add_argument("--dry-run", action="store_true", help="submit nothing")
     parser.add_argument("words", nargs=argparse.REMAINDER, metavar="COMMAND MESH -o OUT [OPTIONS]")
     args = parser.parse_args()
+    args.words = args.words[args.words[:1] == ["--"]:]
     if bool(args.sweep) == bool(args.words):
         parser.error("give either the command to run (sphere scan.ply -o map.h5) or --sweep TABLE")
     return args

@@ -58,13 +58,24 @@ def check_numbers(page, result, thinned):
     assert numpy.array_equal(image[faces][:, :, :2], images[cells][:, :, :2].astype("<f4")) and not image[:, 2].any()
 
 
-def check_browser(chromium, path):
+def keep_picture(chromium, flags, path, picture):
+    """What a person would see, beside the program: for people, and to see that it is there."""
+    with tempfile.TemporaryDirectory() as home:
+        subprocess.run([chromium, *flags, "--user-data-dir=" + home, "--virtual-time-budget=5000", "--window-size=1200,1500",
+                        "--screenshot=" + picture, "file://" + path], capture_output=True, timeout=120, check=False)
+    with open(picture, "rb") as file:
+        assert file.read(4) == b"\x89PNG" and os.path.getsize(picture) > 50000
+    print("a picture of the page:", picture)
+
+
+def check_browser(chromium, path, picture):
     """Something is drawn, and a drag changes it."""
+    flags = ["--headless", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    keep_picture(chromium, flags, path, picture)
     with open(path, encoding="utf-8") as file:
         page = file.read()
     with open(path, "w", encoding="utf-8") as file:
         file.write(page.replace("</body>", DRAG))
-    flags = ["--headless", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
     with tempfile.TemporaryDirectory() as home:
         done = subprocess.run([chromium, *flags, "--user-data-dir=" + home, "--virtual-time-budget=5000", "--dump-dom", "file://" + path],
                               capture_output=True, text=True, timeout=120, check=False)
@@ -88,7 +99,7 @@ def main():
         check_numbers(program.read("hills.html").decode(), program.file("hills.h5"), False)
         chromium = shutil.which("chromium") or shutil.which("chromium-browser")
         if chromium:
-            check_browser(chromium, program.file("hills.html"))
+            check_browser(chromium, program.file("hills.html"), os.path.join(os.path.dirname(program.path), "turning.png"))
         program.succeed("generate", "hills", "-n", 62000, "-o", "large.obj", ranks=1)
         program.succeed("disk", "large.obj", "-o", "large.h5", "-quiet", "-max_it", 0, codes=(4,))
         program.succeed("report", "large.h5", "-o", "large.html", "-width", 300)

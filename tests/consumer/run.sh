@@ -65,7 +65,11 @@ grep -q EqmSoupCreateFromRoot "$work/page.c"
 mpicc -std=c11 -Wall -Werror -Wno-unused-function -o "$work/page" "$work/page.c" $flags
 cd "$work"
 "$installed/bin/equimap" generate hills -n 800 -o scan.ply >/dev/null
-run ./page
+run ./page -monitor >monitored.txt
+run ./page | tee page.txt
+# Nothing is printed unasked; -monitor shows what the program shows.
+[ "$(grep -c . page.txt)" -eq 1 ] && ! grep -q iteration page.txt && grep -q "^iteration " monitored.txt && grep -q "^converged: \|^not converged: " monitored.txt ||
+  { echo "with -monitor:"; cat monitored.txt; exit 1; }
 run "$installed/bin/equimap" disk scan.ply -o program.h5 -quiet >/dev/null || [ $? -eq 4 ]
 python=/usr/bin/python3
 [ -x "$python" ] || python=python3

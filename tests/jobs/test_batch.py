@@ -170,7 +170,7 @@ def check_submit():
     assert "-n 4 -W 2:30 -wt 3 -wa USR1 -r -Q 75" in said and "-q long -P maps" in said, said
     said = submit("--system", "pbs", "--time", "10", "--sweep", "t.csv", "--results", "sent")
     assert "qsub -V -J 1-2 " in pathlib.Path("qsub.log").read_text() and "4711" in said, said
-    assert "fewer would be faster" in submit("--system", "lsf", "--dry-run", "--ranks", "8", *run)
+    assert "fewer would be faster" in submit("--system", "lsf", "--dry-run", "--ranks", "8", "--", *run)
     said = submit("--system", "lsf", "--dry-run", "register", "head.obj", "head.obj", "-o", "map.h5")
     assert "run.lsf register head.obj head.obj -o map.h5" in said, said
     os.makedirs("closed")
