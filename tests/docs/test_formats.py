@@ -1,7 +1,7 @@
 """The table of docs/formats.md: what it says is read and written is, and other programs read what we write.
 
 usage: python3 test_formats.py EQUIMAP [all]
-With `all` also the readers that take seconds to start: ParaView, Workbench, Gmsh, Blender.
+With `all` also the readers that take seconds to start: ParaView, Workbench, Gmsh, Blender, MeshLab.
 """
 import os
 import re
@@ -128,8 +128,23 @@ def run_blender(program, names):
                     *map(program.file, names)], check=True, stdout=subprocess.DEVNULL)
 
 
+def run_meshlab(folder, name):
+    """What MeshLab writes again, with the qualities that it has found."""
+    environment = {**os.environ, "HOME": folder, "XDG_RUNTIME_DIR": folder}
+    subprocess.run(["xvfb-run", "-a", "meshlabserver", "-i", name, "-o", name + ".read.ply", "-m", "vq", "fq"], cwd=folder, check=True,
+                   env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return name + ".read.ply"
+
+
+def read_meshlab(name):
+    run_meshlab(os.path.dirname(name), name)
+    equimap = Program(sys.argv[1], 1, os.path.dirname(name))
+    equimap.succeed("convert", name + ".read.ply", name + ".read.h5")
+    return read_h5py(name + ".read.h5")
+
+
 READERS = {"h5py": read_h5py, "meshio": read_meshio, "nibabel": read_nibabel, "gmsh": read_gmsh, "ParaView": read_paraview,
-           "Workbench": read_workbench, "Blender": read_blender}
+           "Workbench": read_workbench, "Blender": read_blender, "MeshLab": read_meshlab}
 
 
 def available(every):
@@ -137,7 +152,7 @@ def available(every):
     there = {"h5py"}
     there |= {name for name in ("meshio", "nibabel") if subprocess.run([sys.executable, "-c", "import " + name],
                                                                       stderr=subprocess.DEVNULL).returncode == 0}
-    slow = {"gmsh": "gmsh", "ParaView": "pvpython", "Workbench": "wb_command", "Blender": "blender"}
+    slow = {"gmsh": "gmsh", "ParaView": "pvpython", "Workbench": "wb_command", "Blender": "blender", "MeshLab": "meshlabserver"}
     there |= {name for name, command in slow.items() if every and shutil.which(command)}
     return there
 
@@ -183,8 +198,8 @@ def check_textures(program):
         assert (numbers_of(name, "f") == cells).all() and abs(numbers_of(name, "t").reshape(-1, 3, 2) - images[cells]).max() < 1e-5, name
 
 
-def check_quality(program):
-    """The ratio under the name by which MeshLab colours, and still under its own."""
+def check_quality(program, has_meshlab):
+    """The ratio under the name by which MeshLab colours, and still under its own; MeshLab finds it."""
     program.succeed("generate", "head", "-n", 200, "-o", "scan.ply")
     program.succeed("sphere", "scan.ply", "-o", "image.h5,image.ply", "-quiet", codes=(0, 4))
     program.succeed("convert", "image.ply", "image.vtu")
@@ -193,6 +208,11 @@ def check_quality(program):
         for path, quality in (("/cell/ratio", "/cell/quality"), ("/vertex/vertex_ratio", "/vertex/quality")):
             assert abs(read[quality][...] - ours[path.replace("vertex_", "")][...]).max() < 1e-6
             assert (read[path][...] == ours[path.replace("vertex_", "")][...]).all()
+    if has_meshlab:
+        program.succeed("convert", run_meshlab(program.folder, program.file("image.ply")), "found.h5")
+        with h5py.File(program.file("image.h5")) as ours, h5py.File(program.file("found.h5")) as found:
+            assert abs(found["/cell/quality"][...] - ours["/cell/ratio"][...]).max() < 1e-6
+            assert abs(found["/vertex/quality"][...] - ours["/vertex/ratio"][...]).max() < 1e-6
 
 
 def main():
@@ -211,7 +231,7 @@ def main():
         if "Blender" in there:
             run_blender(program, [file_name(kind, suffix) for kind, suffix, reader in wanted if reader == "Blender"])
             check_textures(program)
-        check_quality(program)
+        check_quality(program, "MeshLab" in there)
         for kind, suffix, reader in wanted:
             if reader in there:
                 name = program.file(file_name(kind, suffix))
