@@ -118,8 +118,9 @@ static PetscErrorCode CheckHeader(EqmInput *in, EqmPlyHeader *header)
         return EqmRejectAt(in, element->position, EQM_ERR_IO, "vertices need the properties x, y and z, once each");
       }
     }
-    if (element->is_vertex)
-      header->textured = has[EQM_PLY_ROLE_S] == 1 && has[EQM_PLY_ROLE_T] == 1 ? PETSC_TRUE : PETSC_FALSE;
+    if (element->is_vertex) /* s and t as floats, then u and v as doubles: the latter count */
+      header->textured =
+          has[EQM_PLY_ROLE_S] > 0 && has[EQM_PLY_ROLE_S] == has[EQM_PLY_ROLE_T] ? PETSC_TRUE : PETSC_FALSE;
     if ((element->is_face || element->is_strips) && element->count && has[EQM_PLY_ROLE_CORNERS] != 1) {
       return EqmRejectAt(in, element->position, EQM_ERR_IO, "faces need one list property vertex_indices");
     }

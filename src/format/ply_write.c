@@ -1,5 +1,5 @@
-/* PLY, binary little endian, with fields as properties. Texture coordinates become s and t of the vertices, or, where
-   there are seams, a list texcoord of the faces, as MeshLab has it. */
+/* PLY, binary little endian, with fields as properties. Texture coordinates become s and t (floats), u and v (doubles)
+   of the vertices, or, where there are seams, a list texcoord of the faces, as MeshLab has it. */
 #include "writers.h"
 #include "input.h"
 #include "scalar.h"
@@ -84,7 +84,8 @@ static void PrintHeader(EqmAtomicFile *file, const EqmSerialMesh *mesh, const Eq
   EqmAtomicPrint(file, "ply\nformat binary_little_endian 1.0\ncomment equimap %s\nelement vertex %lld\n", EqmVersion(),
                  (long long)mesh->num_vertices);
   EqmAtomicPrint(file, "property double x\nproperty double y\nproperty double z\n");
-  if (texture == TEXTURE_OF_VERTICES) EqmAtomicPrint(file, "property double s\nproperty double t\n");
+  if (texture == TEXTURE_OF_VERTICES) /* MeshLab takes floats by the one name, and no others; doubles for all digits */
+    EqmAtomicPrint(file, "property float s\nproperty float t\nproperty double u\nproperty double v\n");
   PrintFieldHeaders(file, fields, num_fields, PETSC_FALSE);
   EqmAtomicPrint(file, "element face %lld\nproperty list uchar int vertex_indices\n", (long long)mesh->num_cells);
   if (texture == TEXTURE_OF_CORNERS) EqmAtomicPrint(file, "property list uchar float texcoord\n");
@@ -128,7 +129,12 @@ PetscErrorCode EqmWritePly(EqmAtomicFile *file, const EqmSerialMesh *mesh, const
   PrintHeader(file, mesh, fields, num_fields, texture);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
     EqmAtomicWrite(file, mesh->vertices + 3 * (size_t)i, 3 * sizeof(double));
-    if (texture == TEXTURE_OF_VERTICES) EqmAtomicWrite(file, seams.point + 2 * (size_t)i, 2 * sizeof(double));
+    if (texture == TEXTURE_OF_VERTICES) {
+      const double *const uv = seams.point + 2 * (size_t)i;
+      const float st[2] = {(float)uv[0], (float)uv[1]};
+      EqmAtomicWrite(file, st, sizeof(st));
+      EqmAtomicWrite(file, uv, 2 * sizeof(double));
+    }
     WriteFields(file, fields, num_fields, PETSC_FALSE, i);
   }
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {

@@ -131,7 +131,7 @@ def run_blender(program, names):
 def run_meshlab(folder, name):
     """What MeshLab writes again, with the qualities that it has found."""
     environment = {**os.environ, "HOME": folder, "XDG_RUNTIME_DIR": folder}
-    subprocess.run(["xvfb-run", "-a", "meshlabserver", "-i", name, "-o", name + ".read.ply", "-m", "vq", "fq"], cwd=folder, check=True,
+    subprocess.run(["xvfb-run", "-a", "meshlabserver", "-i", name, "-o", name + ".read.ply", "-m", "vq", "fq", "vt", "wt"], cwd=folder, check=True,
                    env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return name + ".read.ply"
 
@@ -198,6 +198,16 @@ def check_textures(program):
         assert (numbers_of(name, "f") == cells).all() and abs(numbers_of(name, "t").reshape(-1, 3, 2) - images[cells]).max() < 1e-5, name
 
 
+def check_textures_in_meshlab(program):
+    """MeshLab writes the texture coordinates again that it has found."""
+    program.succeed("generate", "hills", "-n", 300, "-o", "scan.obj")
+    program.succeed("square", "scan.obj", "-o", "st.h5", "-uv", "st.ply", "-quiet", codes=(0, 4))
+    program.succeed("convert", run_meshlab(program.folder, program.file("st.ply")), "found.h5")
+    with h5py.File(program.file("st.h5")) as file, h5py.File(program.file("found.h5")) as found:
+        images, cells = file["/map/coordinates"][...], file["/mesh/cells"][...]
+        assert abs(found["/cell/texcoord"][...].reshape(-1, 3, 2) - images[cells]).max() < 1e-6
+
+
 def check_quality(program, has_meshlab):
     """The ratio under the name by which MeshLab colours, and still under its own; MeshLab finds it."""
     program.succeed("generate", "head", "-n", 200, "-o", "scan.ply")
@@ -232,6 +242,8 @@ def main():
             run_blender(program, [file_name(kind, suffix) for kind, suffix, reader in wanted if reader == "Blender"])
             check_textures(program)
         check_quality(program, "MeshLab" in there)
+        if "MeshLab" in there:
+            check_textures_in_meshlab(program)
         for kind, suffix, reader in wanted:
             if reader in there:
                 name = program.file(file_name(kind, suffix))
