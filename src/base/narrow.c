@@ -13,3 +13,19 @@ PetscErrorCode EqmCheckFits(PetscInt64 number, size_t width, const char *library
              number, what, (int)(8 * width), library);
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode EqmGatherCounts(MPI_Comm comm, PetscInt64 mine, const char *what, PetscMPIInt *count, PetscMPIInt *start)
+{
+  const PetscMPIInt narrow = (PetscMPIInt)mine;
+  PetscInt64 total = mine;
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_INT64, MPI_SUM, comm));
+  PetscCall(EqmCheckFits(total, sizeof(PetscMPIInt), "MPI", what));
+  PetscCallMPI(MPI_Allgather(&narrow, 1, MPI_INT, count, 1, MPI_INT, comm));
+  start[0] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
+  PetscFunctionReturn(0);
+}

@@ -10,4 +10,11 @@
    Not collective. `library` and `what`: whose integers, and what is counted, for the message. Errors: PETSC_ERR_SUP. */
 PETSC_INTERN PetscErrorCode EqmCheckFits(PetscInt64 number, size_t width, const char *library, const char *what);
 
+/* EqmGatherCounts - how many records every rank has, and where they begin when they lie one after the other.
+
+   Collective. `mine`: records of this rank; `count`, `start`: as many entries as ranks, and one more, for MPI's gathers
+   and scatters. Errors, the same on every rank: PETSC_ERR_SUP if all together are more than MPI can count. */
+PETSC_INTERN PetscErrorCode EqmGatherCounts(MPI_Comm comm, PetscInt64 mine, const char *what, PetscMPIInt *count,
+                                            PetscMPIInt *start);
+
 #endif

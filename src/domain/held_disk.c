@@ -47,16 +47,18 @@ static PetscErrorCode TakeAngles(EqmMesh mesh, const char *file, EqmTable *table
 {
   PetscInt *vertex, *local, found = 0, total;
   PetscReal *value;
+  PetscMPIInt count;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Bcast(&table->rows, 1, MPIU_INT, 0, mesh->comm));
+  PetscCall(PetscMPIIntCast(table->rows, &count));
   PetscCall(PetscMalloc3(table->rows, &vertex, table->rows, &local, table->rows, &value));
   for (PetscInt i = 0; i < table->rows && mesh->rank == 0; i++) {
     vertex[i] = (PetscInt)table->values[2 * i];
     value[i] = table->values[2 * i + 1];
   }
-  PetscCallMPI(MPI_Bcast(vertex, (PetscMPIInt)table->rows, MPIU_INT, 0, mesh->comm));
-  PetscCallMPI(MPI_Bcast(value, (PetscMPIInt)table->rows, MPIU_REAL, 0, mesh->comm));
+  PetscCallMPI(MPI_Bcast(vertex, count, MPIU_INT, 0, mesh->comm));
+  PetscCallMPI(MPI_Bcast(value, count, MPIU_REAL, 0, mesh->comm));
   PetscCall(EqmMeshFindVertices(mesh, table->rows, vertex, local));
   for (PetscInt i = 0; i < table->rows; i++) {
     if (local[i] < 0 || !mesh->on_boundary[local[i]]) continue;

@@ -1,5 +1,6 @@
 /* EqmSoupReadDensity: one positive number per cell. */
 #include "format.h"
+#include "base/narrow.h"
 #include "mesh/soup_private.h"
 #include "hdf5.h"
 #include "input.h"
@@ -110,17 +111,14 @@ static PetscErrorCode ReadOnRoot(const char *file, PetscInt num_cells, PetscBool
 /* Deal the values of rank 0 to the slabs of cells. */
 static PetscErrorCode Deal(EqmSoup soup, const PetscReal *values, PetscReal *density)
 {
-  PetscMPIInt rank, size, *counts, *starts, mine;
+  PetscMPIInt rank, size, *counts, *starts;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
   PetscCallMPI(MPI_Comm_size(soup->comm, &size));
   PetscCall(PetscMalloc2(size, &counts, size + 1, &starts));
-  PetscCall(PetscMPIIntCast(soup->cell_end - soup->cell_start, &mine));
-  PetscCallMPI(MPI_Gather(&mine, 1, MPI_INT, counts, 1, MPI_INT, 0, soup->comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; rank == 0 && r < size; ++r) starts[r + 1] = starts[r] + counts[r];
-  PetscCallMPI(MPI_Scatterv(values, counts, starts, MPIU_REAL, density, mine, MPIU_REAL, 0, soup->comm));
+  PetscCall(EqmGatherCounts(soup->comm, soup->cell_end - soup->cell_start, "values of a density", counts, starts));
+  PetscCallMPI(MPI_Scatterv(values, counts, starts, MPIU_REAL, density, counts[rank], MPIU_REAL, 0, soup->comm));
   PetscCall(PetscFree2(counts, starts));
   PetscFunctionReturn(0);
 }
@@ -157,10 +155,10 @@ static PetscErrorCode CheckSpan(EqmSoup soup, const char *file, const PetscReal 
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, ends, 2, MPIU_REAL, MPIU_MIN, soup->comm));
   if (ends[0] * ends[1] >= 1. / most || soup->num_cells == 0) PetscFunctionReturn(0);
-  EqmFail(
-      soup->comm, EQM_ERR_MESH,
-      "%s: the densities run from %.6g to %.6g; more than a factor of %.6g between them no arithmetic of doubles resolves",
-      file, (double)ends[0], (double)(1. / ends[1]), (double)most);
+  EqmFail(soup->comm, EQM_ERR_MESH,
+          "%s: the densities run from %.6g to %.6g; more than a factor of %.6g between them no arithmetic of doubles "
+          "resolves",
+          file, (double)ends[0], (double)(1. / ends[1]), (double)most);
 }
 
 static PetscErrorCode FillDensity(EqmSoup soup, const char *file, PetscReal *density)

@@ -120,13 +120,14 @@ PetscErrorCode EqmLandmarkListRead(MPI_Comm comm, const char *file, PetscInt num
                                    EqmLandmarkList *list)
 {
   EqmTable table;
-  PetscMPIInt rank;
+  PetscMPIInt rank, count;
 
   PetscFunctionBegin;
   PetscCall(EqmTableRead(comm, file, 2, 6, wanted, &table));
+  PetscCall(PetscMPIIntCast(table.columns * table.rows, &count));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank != 0) PetscCall(PetscMalloc1(table.columns * table.rows, &table.values));
-  PetscCallMPI(MPI_Bcast(table.values, (PetscMPIInt)(table.columns * table.rows), MPIU_REAL, 0, comm));
+  PetscCallMPI(MPI_Bcast(table.values, count, MPIU_REAL, 0, comm));
   PetscCall(Take(comm, file, num_vertices_a, num_vertices_b, &table, list));
   PetscCall(CheckTwice(comm, file, &table, 0, "A"));
   if (list->width == 1) PetscCall(CheckTwice(comm, file, &table, 1, "B"));

@@ -1,5 +1,6 @@
 /* The boundary: its facets, its vertices, and for a disk-type surface the order and arc length of its loop. */
 #include "mesh/build.h"
+#include "base/narrow.h"
 #include "mesh/mesh_private.h"
 
 /* The facet opposite a corner, oriented as the boundary of a positively oriented cell. */
@@ -187,7 +188,7 @@ static PetscErrorCode MakeRecord(size_t bytes, MPI_Datatype *record)
    back. */
 static PetscErrorCode OrderLoopOnRoot(EqmMesh mesh, PetscInt n, const LoopEdge *mine, LoopPlace *tail_at)
 {
-  PetscMPIInt *count, *start, num_mine;
+  PetscMPIInt *count, *start;
   LoopEdge *all = NULL;
   LoopPlace *all_places = NULL;
   PetscBool closed = PETSC_TRUE;
@@ -195,16 +196,14 @@ static PetscErrorCode OrderLoopOnRoot(EqmMesh mesh, PetscInt n, const LoopEdge *
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(mesh->size, &count, mesh->size + 1, &start));
-  PetscCall(PetscMPIIntCast(n, &num_mine));
-  PetscCallMPI(MPI_Allgather(&num_mine, 1, MPI_INT, count, 1, MPI_INT, mesh->comm));
-  start[0] = 0;
-  for (PetscMPIInt p = 0; p < mesh->size; p++) start[p + 1] = start[p] + count[p];
+  PetscCall(EqmGatherCounts(mesh->comm, n, "edges of the boundary", count, start));
   if (mesh->rank == 0) PetscCall(PetscMalloc2(start[mesh->size], &all, start[mesh->size], &all_places));
   PetscCall(MakeRecord(sizeof(LoopEdge), &edge_type));
   PetscCall(MakeRecord(sizeof(LoopPlace), &place_type));
-  PetscCallMPI(MPI_Gatherv(mine, num_mine, edge_type, all, count, start, edge_type, 0, mesh->comm));
+  PetscCallMPI(MPI_Gatherv(mine, count[mesh->rank], edge_type, all, count, start, edge_type, 0, mesh->comm));
   if (mesh->rank == 0) PetscCall(OrderLoop(start[mesh->size], all, all_places, &closed));
-  PetscCallMPI(MPI_Scatterv(all_places, count, start, place_type, tail_at, num_mine, place_type, 0, mesh->comm));
+  PetscCallMPI(
+      MPI_Scatterv(all_places, count, start, place_type, tail_at, count[mesh->rank], place_type, 0, mesh->comm));
   PetscCallMPI(MPI_Type_free(&edge_type));
   PetscCallMPI(MPI_Type_free(&place_type));
   if (mesh->rank == 0) PetscCall(PetscFree2(all, all_places));

@@ -63,8 +63,10 @@ PetscErrorCode EqmMeshGatherVertices(EqmMesh mesh, PetscInt num, const PetscInt 
   const PetscInt stride = width + 1; /* the last entry counts the owners: 1, or 0 for a vertex of no cell */
   PetscReal *entries;
   PetscInt *local;
+  PetscMPIInt count;
 
   PetscFunctionBegin;
+  PetscCall(PetscMPIIntCast(stride * num, &count));
   PetscCall(PetscCalloc1(stride * num, &entries));
   PetscCall(PetscMalloc1(num, &local));
   PetscCall(EqmMeshFindVertices(mesh, num, vertices, local));
@@ -73,7 +75,7 @@ PetscErrorCode EqmMeshGatherVertices(EqmMesh mesh, PetscInt num, const PetscInt 
     PetscCall(PetscArraycpy(entries + stride * i, values + width * local[i], width));
     entries[stride * i + width] = 1.;
   }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, entries, (PetscMPIInt)(stride * num), MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, entries, count, MPIU_REAL, MPIU_SUM, mesh->comm));
   if (missing) *missing = -1;
   for (PetscInt i = num - 1; i >= 0; i--) {
     PetscCall(PetscArraycpy(gathered + width * i, entries + stride * i, width));

@@ -62,18 +62,20 @@ static PetscErrorCode ShareJoined(MPI_Comm comm, const EqmBoundary *boundary, Pe
                                   PetscInt **other)
 {
   PetscInt count = 0;
+  PetscMPIInt items;
 
   PetscFunctionBegin;
   for (PetscInt e = 0; e < boundary->num_edges; e++) count += boundary->same[e] != e;
   PetscCallMPI(MPI_Bcast(&count, 1, MPIU_INT, 0, comm));
+  PetscCall(PetscMPIIntCast(count, &items));
   PetscCall(PetscMalloc2(count, number, count, other));
   for (PetscInt e = 0, k = 0; e < boundary->num_edges; e++) { /* ascending by tail */
     if (boundary->same[e] == e) continue;
     (*number)[k] = boundary->edge[e].tail;
     (*other)[k++] = boundary->edge[boundary->same[e]].tail;
   }
-  PetscCallMPI(MPI_Bcast(*number, (PetscMPIInt)count, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(*other, (PetscMPIInt)count, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(*number, items, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(*other, items, MPIU_INT, 0, comm));
   *num_joined = count;
   PetscFunctionReturn(0);
 }

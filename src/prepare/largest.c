@@ -1,6 +1,7 @@
 /* Keep one piece of a mesh. */
 #include "prepare/step.h"
 #include "mesh/soup_private.h"
+#include "base/narrow.h"
 #include "base/rows.h"
 #include "geometry/simplex.h"
 
@@ -46,7 +47,7 @@ static PetscErrorCode ListPieces(const EqmVicinity *vicinity, const PetscInt *la
   PetscInt count = 0;
   PetscReal *measure;
   Piece *mine;
-  PetscMPIInt *counts, *starts, bytes;
+  PetscMPIInt *counts, *starts;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(vicinity->num_owned, &measure, vicinity->num_owned, &mine));
@@ -58,13 +59,10 @@ static PetscErrorCode ListPieces(const EqmVicinity *vicinity, const PetscInt *la
     mine[count].label = label[v];
     mine[count++].measure = measure[v];
   }
-  PetscCall(PetscMPIIntCast(count * (PetscInt)sizeof(Piece), &bytes));
-  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts, 1, MPI_INT, vicinity->comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < vicinity->size; r++) starts[r + 1] = starts[r] + counts[r];
+  PetscCall(EqmGatherCounts(vicinity->comm, count * (PetscInt64)sizeof(Piece), "bytes about pieces", counts, starts));
   *num_pieces = starts[vicinity->size] / (PetscInt)sizeof(Piece);
   PetscCall(PetscMalloc1(*num_pieces, all));
-  PetscCallMPI(MPI_Allgatherv(mine, bytes, MPI_BYTE, *all, counts, starts, MPI_BYTE, vicinity->comm));
+  PetscCallMPI(MPI_Allgatherv(mine, counts[vicinity->rank], MPI_BYTE, *all, counts, starts, MPI_BYTE, vicinity->comm));
   qsort(*all, (size_t)*num_pieces, sizeof(Piece), ComparePieces);
   PetscCall(PetscFree2(measure, mine));
   PetscCall(PetscFree2(counts, starts));

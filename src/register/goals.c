@@ -40,13 +40,15 @@ static PetscErrorCode TakeSurfacePoints(EqmRegistration r)
   const EqmLandmarkList *const list = &r->landmarks;
   const PetscInt num = r->b.mesh->rank == 0 ? list->num : 0;
   EqmLocator locator;
+  PetscMPIInt count;
 
   PetscFunctionBegin;
   PetscCall(EqmLocatorCreate(r->b.mesh, EQM_IMAGE_SPACE, r->b.mesh->position, &locator));
   PetscCall(EqmLocatorFind(locator, num, list->other, &r->on_b));
   PetscCall(EqmLocatorDestroy(&locator));
   PetscCall(EqmLocationInterpolate(r->on_b, r->b.mesh, r->dim, r->b.x, r->goal));
-  PetscCallMPI(MPI_Bcast(r->goal, (PetscMPIInt)(r->dim * list->num), MPIU_REAL, 0, r->comm));
+  PetscCall(PetscMPIIntCast(r->dim * list->num, &count));
+  PetscCallMPI(MPI_Bcast(r->goal, count, MPIU_REAL, 0, r->comm));
   PetscFunctionReturn(0);
 }
 
@@ -147,11 +149,13 @@ PetscErrorCode EqmFindGoals(EqmRegistration r)
 static PetscErrorCode GatherOnB(EqmRegistration r, PetscInt width, const PetscReal *values, PetscReal *gathered)
 {
   PetscInt *vertices;
+  PetscMPIInt count;
 
   PetscFunctionBegin;
   if (r->on_b) {
     PetscCall(EqmLocationInterpolate(r->on_b, r->b.mesh, width, values, gathered));
-    PetscCallMPI(MPI_Bcast(gathered, (PetscMPIInt)(width * r->landmarks.num), MPIU_REAL, 0, r->comm));
+    PetscCall(PetscMPIIntCast(width * r->landmarks.num, &count));
+    PetscCallMPI(MPI_Bcast(gathered, count, MPIU_REAL, 0, r->comm));
     PetscFunctionReturn(0);
   }
   PetscCall(VerticesOfB(r, &vertices));

@@ -254,16 +254,18 @@ PetscErrorCode EqmSideReset(EqmSide *side)
 PetscErrorCode EqmSideCheckVertices(const EqmSide *side, PetscInt num, const PetscInt *vertices, PetscInt *inside)
 {
   PetscInt *local, *owners;
+  PetscMPIInt count;
 
   PetscFunctionBegin;
+  PetscCall(PetscMPIIntCast(num, &count));
   PetscCall(PetscMalloc2(num, &local, num, &owners));
   PetscCall(EqmMeshFindVertices(side->mesh, num, vertices, local));
   for (PetscInt i = 0; i < num; i++) {
     owners[i] = local[i] >= 0;
     inside[i] = local[i] >= 0 && !side->mesh->on_boundary[local[i]];
   }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, owners, (PetscMPIInt)num, MPIU_INT, MPI_SUM, side->mesh->comm));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, inside, (PetscMPIInt)num, MPIU_INT, MPI_SUM, side->mesh->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, owners, count, MPIU_INT, MPI_SUM, side->mesh->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, inside, count, MPIU_INT, MPI_SUM, side->mesh->comm));
   for (PetscInt i = 0; i < num; i++) {
     if (owners[i] == 1) continue;
     EqmFail(side->mesh->comm, EQM_ERR_USAGE, "landmark %" PetscInt_FMT ": vertex %" PetscInt_FMT " of %s is in no cell",

@@ -3,6 +3,7 @@
    nowhere as a square is convex. */
 #include "start/start.h"
 #include "start/cube_faces.h"
+#include "base/narrow.h"
 #include "geometry/rotation.h"
 #include "geometry/simplex.h"
 #include "problem/objective.h"
@@ -53,7 +54,7 @@ static PetscErrorCode CollectPieces(const EqmCubeFaces *cube, PetscInt *count, P
 {
   const EqmMesh mesh = cube->mesh;
   PetscSegBuffer buffer;
-  PetscMPIInt *counts, *starts, mine;
+  PetscMPIInt *counts, *starts;
   MPI_Datatype type;
   Piece *slot;
   size_t size;
@@ -74,15 +75,12 @@ static PetscErrorCode CollectPieces(const EqmCubeFaces *cube, PetscInt *count, P
   PetscCall(PetscSegBufferExtractAlloc(buffer, &slot));
   PetscCall(PetscSegBufferDestroy(&buffer));
   PetscCall(PetscMalloc2(mesh->size, &counts, mesh->size + 1, &starts));
-  mine = (PetscMPIInt)size;
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, mesh->comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < mesh->size; r++) starts[r + 1] = starts[r] + counts[r];
+  PetscCall(EqmGatherCounts(mesh->comm, (PetscInt64)size, "sides along the cube's edges", counts, starts));
   *count = starts[mesh->size];
   PetscCall(PetscMalloc1(*count, pieces));
   PetscCallMPI(MPI_Type_contiguous(sizeof(Piece), MPI_BYTE, &type));
   PetscCallMPI(MPI_Type_commit(&type));
-  PetscCallMPI(MPI_Allgatherv(slot, mine, type, *pieces, counts, starts, type, mesh->comm));
+  PetscCallMPI(MPI_Allgatherv(slot, counts[mesh->rank], type, *pieces, counts, starts, type, mesh->comm));
   PetscCallMPI(MPI_Type_free(&type));
   PetscCall(PetscFree2(counts, starts));
   PetscCall(PetscFree(slot));

@@ -5,6 +5,7 @@
    neighbours elsewhere: what lies below and above is connected, as every vertex has a lower and a higher neighbour. The
    curve runs through triangles and edges, not through vertices, so no vertex is on it twice. */
 #include "start/hemispheres.h"
+#include "base/narrow.h"
 #include "measure/quantile.h"
 #include "unfold/unfold.h"
 
@@ -96,7 +97,8 @@ static PetscErrorCode CollectCurve(EqmCut *cut)
 {
   const EqmMesh mesh = cut->problem->mesh;
   EqmCrossing *mine;
-  PetscMPIInt num_mine = 0, *count, *place;
+  PetscMPIInt *count, *place;
+  PetscInt num_mine = 0;
   MPI_Datatype type;
 
   PetscFunctionBegin;
@@ -107,14 +109,12 @@ static PetscErrorCode CollectCurve(EqmCut *cut)
   for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
     if (IsCut(cut, c)) mine[num_mine++] = CrossCell(cut, c);
   }
-  PetscCallMPI(MPI_Allgather(&num_mine, 1, MPI_INT, count, 1, MPI_INT, mesh->comm));
-  place[0] = 0;
-  for (PetscMPIInt r = 0; r < mesh->size; r++) place[r + 1] = place[r] + count[r];
+  PetscCall(EqmGatherCounts(mesh->comm, num_mine, "cells that a cut crosses", count, place));
   cut->count = place[mesh->size];
   PetscCall(PetscMalloc1(cut->count, &cut->crossing));
   PetscCallMPI(MPI_Type_contiguous(sizeof(EqmCrossing), MPI_BYTE, &type));
   PetscCallMPI(MPI_Type_commit(&type));
-  PetscCallMPI(MPI_Allgatherv(mine, num_mine, type, cut->crossing, count, place, type, mesh->comm));
+  PetscCallMPI(MPI_Allgatherv(mine, count[mesh->rank], type, cut->crossing, count, place, type, mesh->comm));
   PetscCallMPI(MPI_Type_free(&type));
   PetscCall(PetscFree3(mine, count, place));
   EqmCutSort(cut);
