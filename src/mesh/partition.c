@@ -100,13 +100,13 @@ static PetscErrorCode PartitionOnAll(EqmSoup soup, EqmGraph *graph, const char *
   PetscFunctionReturn(0);
 }
 
-/* What works on all ranks is what PETSc was built with. */
+/* What works on all ranks is what PETSc was built with, and has integers of its width (CMakeLists.txt). */
 enum {
   PARTITION_AUTO,
   PARTITION_METIS,
   PARTITION_CURVE,
   PARTITION_SLAB,
-#if defined(PETSC_HAVE_PTSCOTCH)
+#if defined(EQM_HAVE_PTSCOTCH)
   PARTITION_PTSCOTCH,
 #endif
 #if defined(PETSC_HAVE_PARMETIS)
@@ -116,7 +116,7 @@ enum {
 };
 static const char *const partitions[NUM_PARTITIONS] = {
     "auto",     "metis", "curve", "slab",
-#if defined(PETSC_HAVE_PTSCOTCH)
+#if defined(EQM_HAVE_PTSCOTCH)
     "ptscotch",
 #endif
 #if defined(PETSC_HAVE_PARMETIS)

@@ -356,7 +356,7 @@ int main(int argc, char **argv)
   PetscCall(TestShape("hills", 700, "-partition metis", Uneven));
   PetscCall(TestShape("hills", 700, "-partition slab", Uneven));
   PetscCall(TestShape("hills", 700, "-partition curve", Uneven));
-#if defined(PETSC_HAVE_PTSCOTCH)
+#if defined(EQM_HAVE_PTSCOTCH)
   PetscCall(TestShape("hills", 700, "-partition ptscotch", Uneven));
 #endif
   PetscCall(TestCurve());
