@@ -14,7 +14,8 @@ from spack.package import *
 class Equimap(CMakePackage):
     """Area-, volume- and angle-preserving maps of very large triangle and tetrahedral meshes."""
 
-    git = pathlib.Path(__file__).resolve().parents[5].as_uri()  # the clone that this file belongs to
+    # the clone that this file belongs to
+    git = pathlib.Path(__file__).resolve().parents[5].as_uri()
 
     license("BSD-2-Clause")
 
@@ -23,7 +24,11 @@ class Equimap(CMakePackage):
     variant("shared", default=False, description="Build a shared library")
     variant("report", default=True, description="Draw pictures and plots of results (cairo)")
     variant("images", default=True, description="Geometry images (libpng, libtiff)")
-    variant("int64", default=False, description="64-bit indices, for more than some 50 million vertices")
+    variant(
+        "int64",
+        default=False,
+        description="64-bit indices, for more than some 50 million vertices",
+    )
     variant("slepc", default=False, description="Eigenvalues of the energy's Hessian (SLEPc)")
     variant("python", default=False, description="Install the Python package equimap")
 
@@ -50,7 +55,8 @@ class Equimap(CMakePackage):
         depends_on("libpng")
         depends_on("libtiff")
 
-    # The threads are ours: a BLAS that brings its own makes a rank use all cores, and every small front slow.
+    # The threads are ours: a BLAS that brings its own makes a rank use all cores, and every small
+    # front slow.
     for library in ("openblas", "blis", "amdblis", "intel-oneapi-mkl"):
         requires(
             f"^{library} threads=none",
