@@ -7,6 +7,7 @@
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
 #include "base/quiet.h"
+#include "problem/term.h"
 #include "solver/inner.h"
 #include <string.h>
 
@@ -62,14 +63,14 @@ static PetscErrorCode Destroy(Attempt *attempt)
 }
 
 /* Is the map without folds, but further from equal ratios than `level`? What a user has limited is left as it is, and
-   equal ratios are not all that is wanted where there are terms. */
+   with terms equal ratios are not all that is wanted, so that only a poor map is off. */
 static PetscBool IsOff(EqmSolver solver, PetscReal level)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
+  const PetscReal poor = solver->problem->objective->poor_energy;
 
-  if (solver->status == EQM_STATUS_STOPPED || solver->limited || solver->problem->terms || totals->folds > 0)
-    return PETSC_FALSE;
-  return (PetscBool)(solver->problem->objective->poor_energy > 0. && totals->energy > level * totals->total);
+  if (solver->status == EQM_STATUS_STOPPED || solver->limited || totals->folds > 0) return PETSC_FALSE;
+  return (PetscBool)(poor > 0. && totals->energy > (solver->problem->terms ? poor : level) * totals->total);
 }
 
 /* Is there a reason to try another start? */
@@ -79,11 +80,42 @@ static PetscBool IsDisappointing(EqmSolver solver)
   return (PetscBool)(solver->iterate->totals.folds > 0 || IsOff(solver, solver->formulation->far_energy));
 }
 
-/* Fewer folds, or as many and a lower objective. */
-static PetscBool IsBetter(const struct _p_EqmIterate *a, const struct _p_EqmIterate *b)
+/* E and the terms. */
+static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, PetscReal *value)
 {
-  if (a->totals.folds != b->totals.folds) return (PetscBool)(a->totals.folds < b->totals.folds);
-  return (PetscBool)(a->totals.energy < b->totals.energy);
+  PetscReal *image;
+
+  PetscFunctionBegin;
+  *value = iterate->totals.energy;
+  if (!problem->terms) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(problem->mesh->num_local_cells, &image));
+  PetscCall(EqmProblemEvaluate(problem, iterate, &iterate->place, image, value, NULL));
+  PetscCall(PetscFree(image));
+  PetscFunctionReturn(0);
+}
+
+/* Fewer folds, or as many and a lower objective. */
+static PetscErrorCode IsBetter(EqmProblem problem, EqmIterate a, EqmIterate b, PetscBool *better)
+{
+  PetscReal of_a, of_b;
+
+  PetscFunctionBegin;
+  PetscCall(Evaluate(problem, a, &of_a));
+  PetscCall(Evaluate(problem, b, &of_b));
+  *better = (PetscBool)(a->totals.folds == b->totals.folds ? of_a < of_b : a->totals.folds < b->totals.folds);
+  PetscFunctionReturn(0);
+}
+
+/* The attempt's end, or, unless the run has been stopped, what was before if that is the better one. */
+static PetscErrorCode TakeBetter(EqmSolver solver, PetscBool ended, Attempt *before)
+{
+  PetscBool better = ended;
+
+  PetscFunctionBegin;
+  if (ended && solver->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
+  if (ended) PetscCall(IsBetter(solver->problem, solver->iterate, before->iterate, &better));
+  if (!better) PetscCall(Exchange(solver, before));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Tell(EqmSolver solver, const char *next)
@@ -183,8 +215,7 @@ static PetscErrorCode GoOn(EqmSolver solver, const EqmSolverSettings *first, siz
   PetscCall(EqmLmSetResidual(solver->method, &EqmResidualMixed));
   PetscCall(EqmSolverRun(solver));
   PetscCall(EqmLmSetResidual(solver->method, NULL));
-  if (solver->status != EQM_STATUS_STOPPED && !IsBetter(solver->iterate, before.iterate))
-    PetscCall(Exchange(solver, &before));
+  PetscCall(TakeBetter(solver, PETSC_TRUE, &before));
   PetscCall(Destroy(&before));
   PetscFunctionReturn(0);
 }
@@ -206,8 +237,7 @@ static PetscErrorCode TryStart(EqmSolver solver, const EqmStartType *start, cons
   PetscCall(Begin(solver, count, tried, &begun));
   if (begun) PetscCall(EqmSolverRun(solver));
   if (begun) PetscCall(GoOn(solver, first, suffix, attempt));
-  if (!begun || (solver->status != EQM_STATUS_STOPPED && !IsBetter(solver->iterate, other.iterate)))
-    PetscCall(Exchange(solver, &other));
+  PetscCall(TakeBetter(solver, begun, &other));
   PetscCall(Destroy(&other));
   PetscFunctionReturn(0);
 }

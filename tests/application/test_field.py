@@ -1,5 +1,5 @@
 """Inputs as users brought them: plain grids to the square, ears with and without -repair, an STL file's cylinder and a bent bar to
-the sphere, a disk of six vertices that no discrete map keeps the angles of.
+the sphere, a disk of six vertices that no discrete map keeps the angles of, a spiral, triangle strips and parametric nodes.
 
 usage: python3 test_field.py EQUIMAP [RANKS]
 """
@@ -108,6 +108,8 @@ def check_sphere(program):
     single = [energy(program, "sphere", "bar.obj", "-start", start, codes=(0, 4))[0] for start in ("tutte", "cascade")]
     assert default <= max(min(single) * (1 + 1e-3), good), (default, single)
     assert "with the mixed residual" in text and "once more from -start" in text, text
+    balanced, text = energy(program, "sphere", "bar.obj", "-balance", ".01")
+    assert balanced <= 1e-2 and "once more from -start" in text, (balanced, text)
 
 
 def check_coarse(program):
@@ -124,6 +126,40 @@ def check_coarse(program):
     assert done.returncode in (3, 4) and "PETSC ERROR" not in said and "run together" in said, (done.returncode, said)
 
 
+
+def check_spiral(program):
+    """A long strip is no hard surface: every triangle can keep its area."""
+    turns, across = 60, 3
+    angle, width = numpy.meshgrid(2 * numpy.pi * numpy.arange(turns + 1) / turns, numpy.arange(across + 1) / (3.3 * across), indexing="ij")
+    radius = 1 + angle / (2 * numpy.pi) + width
+    points = numpy.stack([radius * numpy.cos(angle), radius * numpy.sin(angle), 0 * angle], axis=-1).reshape(-1, 3)
+    first = [i * (across + 1) + j for i in range(turns) for j in range(across)]
+    write(program, "spiral.obj", points, [cell for a in first for cell in ((a, a + 1, a + across + 2), (a, a + across + 2, a + across + 1))])
+    for target in ("disk", "square"):
+        assert energy(program, target, "spiral.obj")[0] < 1e-3, target
+
+
+def check_files(program):
+    """Vertices of no triangle without numbers, triangle strips, nodes with parameters: the same surface, the same map."""
+    points, cells = grid(9, 7)
+    points = [(x, y, 0.3 * numpy.sin(x) * numpy.cos(y)) for x, y, _ in points]
+    write(program, "plain.obj", points, cells)
+    plain, _ = energy(program, "disk", "plain.obj")
+    write(program, "loose.obj", [*points, (numpy.nan, 0, 0)], cells)
+    strips = [index for y in range(6) for index in [*(k for x in range(9) for k in (y * 9 + x, (y + 1) * 9 + x)), -1]]
+    program.write("strips.ply", "\n".join(
+        ["ply", "format ascii 1.0", f"element vertex {len(points)}", *(f"property double {axis}" for axis in "xyz"), "element tristrips 1",
+         "property list int int vertex_indices", "end_header", *(f"{x!r} {y!r} {float(z)!r}" for x, y, z in points),
+         " ".join(map(str, [len(strips), *strips])), ""]))
+    program.write("nodes.msh", "\n".join(
+        ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$ParametricNodes", str(len(points)),
+         *(f"{k + 1} {x!r} {y!r} {float(z)!r} 2 1 {x / 8!r} {y / 6!r}" for k, (x, y, z) in enumerate(points)), "$EndParametricNodes",
+         "$Elements", str(len(cells)), *(f"{k + 1} 2 2 1 1 {a + 1} {b + 1} {c + 1}" for k, (a, b, c) in enumerate(cells)), "$EndElements", ""]))
+    for name in ("loose.obj", "strips.ply", "nodes.msh"):
+        other, _ = energy(program, "disk", name)
+        assert abs(other - plain) <= 1e-6 * plain, (name, other, plain)
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
@@ -131,6 +167,8 @@ def main():
         check_repair(program)
         check_sphere(program)
         check_coarse(program)
+        check_spiral(program)
+        check_files(program)
     return 0
 
 
