@@ -79,6 +79,28 @@ static PetscErrorCode StoreConformalFactor(EqmMap map, EqmMesh mesh, const Petsc
   PetscFunctionReturn(0);
 }
 
+static PetscBool IsFinite(const EqmStatistics *s)
+{
+  return (PetscBool)!PetscIsInfOrNanReal(s->mean + s->sd + s->min + s->max + s->p25 + s->p50 + s->p75 + s->p95);
+}
+
+/* A result whose figures are no numbers must not look like one, whatever spoilt them. Quasiconformal distortion alone
+   may be infinite: that of a flat image is. */
+static PetscErrorCode CheckFigures(MPI_Comm comm, PetscInt cell_size, const EqmDistortion *d)
+{
+  const EqmWeightedRatio *const w = &d->weighted_ratio;
+  const EqmStatistics *const q = &d->quasiconformal;
+  const PetscReal weighted = w->sd + w->p05 + w->p25 + w->p50 + w->p75 + w->p95 + w->outlier_share + w->cell_sd_without;
+  PetscBool finite = (PetscBool)(IsFinite(&d->ratio) && IsFinite(&d->ratio_error));
+
+  PetscFunctionBegin;
+  if (PetscIsInfOrNanReal(d->energy + d->image_measure + d->mesh_measure + weighted)) finite = PETSC_FALSE;
+  if (cell_size == 3 && (!IsFinite(&d->angle_error) || PetscIsNanReal(q->mean) || PetscIsNanReal(q->p50)))
+    finite = PETSC_FALSE;
+  PetscCheck(finite, comm, PETSC_ERR_FP, "the figures of the map are not finite");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x)
 {
   const PetscInt n = mesh->num_owned_cells;
@@ -96,6 +118,8 @@ PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x)
     for (PetscInt c = 0; c < mesh->num_local_cells; c++) a[c] = PetscAbsReal(a[c]);
     PetscCall(EqmImageSum(mesh, a, &totals));
   }
+  PetscCheck(totals.total > 0. && !PetscIsInfOrNanReal(totals.total + totals.energy), mesh->comm, PETSC_ERR_FP,
+             "the figures of the map are not finite: its image measures %g", (double)totals.total);
   map->distortion.energy = totals.energy;
   map->distortion.image_measure = totals.total;
   map->distortion.mesh_measure = mesh->measure;
@@ -112,6 +136,7 @@ PetscErrorCode EqmMapMeasure(EqmMap map, EqmMesh mesh, const PetscReal *x)
   PetscCall(EqmStatisticsOf(mesh->comm, n, sample, &map->distortion.ratio_error));
   PetscCall(PetscFree2(a, sample));
   if (mesh->cell_size == 3) PetscCall(EqmMapMeasureAngles(map, mesh, x));
+  PetscCall(CheckFigures(mesh->comm, mesh->cell_size, &map->distortion));
   PetscCall(EqmPhaseEnd(mesh->ledger, EQM_PHASE_MEASURE));
   PetscFunctionReturn(0);
 }

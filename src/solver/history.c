@@ -22,6 +22,8 @@ PetscErrorCode EqmHistoryAddRow(EqmSolver solver)
   EqmHistoryRow *row;
 
   PetscFunctionBegin;
+  PetscCheck(!PetscIsInfOrNanReal(totals->energy + totals->sd + totals->total), solver->comm, PETSC_ERR_FP,
+             "the energy is not finite after iteration %" PetscInt_FMT, iterate->number);
   PetscCall(EqmHistoryReserve(solver, solver->num_history + 1));
   PetscCall(EqmLedgerGetWork(solver->mesh->ledger, &work));
   solver->objectives[solver->num_history] = iterate->objective;

@@ -59,8 +59,6 @@ static PetscErrorCode Iterate(EqmSolver solver)
       break;
     }
     iterate->number++;
-    PetscCheck(!PetscIsInfOrNanReal(iterate->totals.energy), solver->comm, PETSC_ERR_FP,
-               "the energy is not finite after iteration %" PetscInt_FMT, iterate->number);
     PetscCall(EqmHistoryAddRow(solver));
     PetscCall(EqmJudgeIteration(solver, &stop));
   }

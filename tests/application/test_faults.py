@@ -200,7 +200,8 @@ def check_nan(program, every):
     for method in ("lm", "lbfgs", "rgd", "fixed-point", "ncg"):
         run = ("disk", "hills.obj", "-method", method, "-max_it", 12, "-o", "out.h5", "-summary", "out.json")
         sums = program.count(run)[2]
-        for k in range(1, sums + 1, 1 if every else max(1, sums // 6)):
+        measured = range(sums - 15, sums + 1) if method == "lm" else ()  # the figures of the result are the last
+        for k in sorted({*range(1, sums + 1, 1 if every else max(1, sums // 6)), *measured}):
             result = program.fault(run, nan=k)
             text = f"{method}, sum {k} of {sums}: exit code {result.returncode}\n{result.stdout}{result.stderr}"
             assert result.returncode in (0, 1, 4, 5), text
@@ -215,7 +216,7 @@ def check_nan(program, every):
                 share *= triangle_areas(vertices, cells).sum() / triangle_areas(image, cells).sum()
                 told = json.loads(program.read("out.json"))
                 assert share.min() > 0. and math.isclose(told["ratio"]["sd"] or -1., share.std(), rel_tol=1e-6), text
-                assert "null" not in json.dumps([told["energy"], told["ratio"], told["ratio_error"]]), told
+            assert "null" not in program.read("out.json").decode(), text
 
 
 def fill(path):

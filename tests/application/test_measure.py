@@ -117,6 +117,17 @@ def check_points(program, uv, truth):
         assert result.returncode == code and words in result.stderr, (name, result)
 
 
+def check_no_map(program, uv):
+    """Images that are no map are refused, and nothing is written."""
+    lost = uv.copy()
+    lost[5, 0] = numpy.nan
+    for image, words in ((0 * uv, "no area"), (uv * (1, 0), "no area"), (1e200 * uv, "beyond a double's range"), (lost, "vertex 5 is not finite")):
+        numpy.save(program.file("no_map.npy"), image)
+        result = program.run("measure", "hills.obj", "no_map.npy", "-summary", "no_map.json")
+        assert result.returncode == 3 and words in result.stderr and "PETSC" not in result.stderr, (words, result)
+        assert not os.path.exists(program.file("no_map.json"))
+
+
 def check_sphere(program):
     """A sphere of any size anywhere; a surface in space has no folds."""
     program.succeed("generate", "head", "-n", 400, "-o", "head.obj")
@@ -147,6 +158,7 @@ def main():
             uv = result["/map/coordinates"][...]
         check_texture(program, vertices, cells, uv, truth)
         check_points(program, uv, truth)
+        check_no_map(program, uv)
         check_sphere(program)
         check_written(program)
 
