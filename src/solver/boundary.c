@@ -15,19 +15,7 @@ static PetscErrorCode MapToCube(void *context, EqmMesh surface, PetscReal *x, Pe
   PetscFunctionReturn(0);
 }
 
-/* A box, in its own coordinates or turned to its principal axes, is known already. */
-static PetscErrorCode TakeBox(EqmSolver solver, PetscReal *places, PetscBool *is_box)
-{
-  PetscFunctionBegin;
-  *is_box = PETSC_FALSE;
-  for (int turned = 0; turned < 2 && !*is_box; turned++) {
-    PetscCall(EqmStartPlaceSolid(solver->mesh, (PetscBool)turned, places));
-    PetscCall(EqmCubeFromBox(solver->mesh, places, is_box));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* By the surface's map to the sphere. */
+/* Those of a box are known; of others they come from the surface's map to the sphere. */
 static PetscErrorCode MakePlaces(EqmSolver solver, PetscReal *places)
 {
   EqmStartOptions to_cube = solver->settings.start;
@@ -35,7 +23,7 @@ static PetscErrorCode MakePlaces(EqmSolver solver, PetscReal *places)
   PetscBool is_box;
 
   PetscFunctionBegin;
-  PetscCall(TakeBox(solver, places, &is_box));
+  PetscCall(EqmCubeFromBox(solver->mesh, places, &is_box));
   if (is_box) PetscFunctionReturn(0);
   to_cube.map_surface = MapToCube;
   to_cube.context = &solver->settings.start;

@@ -66,13 +66,13 @@ static void PrincipalAxes(PetscReal covariance[9], PetscReal axes[9])
 
 /* Places of the mesh's vertices, for an anisotropic scaling turned and scaled to fill the cube [-1, 1]^3 (003 (11),
    with the largest absolute value that it means). */
-PetscErrorCode EqmStartPlaceSolid(EqmMesh mesh, PetscBool anisotropic_scaling, PetscReal *x)
+static PetscErrorCode PlaceMesh(EqmMesh mesh, PetscBool scaled, PetscReal *x)
 {
   PetscReal center[3], covariance[9], axes[9], local[3] = {0.}, largest[3];
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(x, mesh->position, 3 * mesh->num_local));
-  if (!anisotropic_scaling) PetscFunctionReturn(0);
+  if (!scaled) PetscFunctionReturn(0);
   PetscCall(Moments(mesh, center, covariance));
   PrincipalAxes(covariance, axes);
   for (PetscInt v = 0; v < mesh->num_local; v++) {
@@ -134,7 +134,7 @@ static PetscErrorCode MapBoundary(EqmMesh solid, const EqmStartOptions *options,
 PetscErrorCode EqmStartPlaceBoundary(EqmMesh solid, const EqmStartOptions *options, PetscReal *x, PetscInt64 *folds)
 {
   PetscFunctionBegin;
-  PetscCall(EqmStartPlaceSolid(solid, options->anisotropic_scaling, x));
+  PetscCall(PlaceMesh(solid, options->anisotropic_scaling, x));
   PetscCall(MapBoundary(solid, options, x, folds));
   PetscFunctionReturn(0);
 }
@@ -180,7 +180,7 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(6 * mesh->num_local_cells, &weights, mesh->num_local, &group));
   for (PetscInt v = 0; v < mesh->num_local; v++) group[v] = mesh->on_boundary[v] ? EQM_GROUP_FIXED : 0;
-  PetscCall(EqmStartPlaceSolid(mesh, options->anisotropic_scaling, iterate->place.x));
+  PetscCall(PlaceMesh(mesh, options->anisotropic_scaling, iterate->place.x));
   /* L_V of the mesh's own places is the Laplacian of the Dirichlet energy: the first step is the harmonic map */
   for (PetscInt k = 0; k <= options->steps; k++) {
     PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, weights));

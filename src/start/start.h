@@ -66,15 +66,12 @@ PETSC_INTERN const EqmStartType EqmStartPlaneHarmonic, EqmStartPlaneFixedPoint, 
     EqmStartSphereNormals, EqmStartSphereGauss, EqmStartSphereTutte, EqmStartBallHarmonic, EqmStartBallFixedPoint,
     EqmStartPlaneCascade, EqmStartSphereCascade, EqmStartFilePlane, EqmStartFileSphere, EqmStartFileBall;
 
-/* The places of a solid's vertices that its first map begins with, three per local vertex: its own, or turned and
-   scaled to a cube (003 (11)). Collective. */
-PETSC_INTERN PetscErrorCode EqmStartPlaceSolid(EqmMesh solid, PetscBool anisotropic_scaling, PetscReal *x);
 /* Map the boundary of a solid as its first maps do, by options->map_surface: x, three per local vertex, of boundary
    vertices. Collective. */
 PETSC_INTERN PetscErrorCode EqmStartPlaceBoundary(EqmMesh solid, const EqmStartOptions *options, PetscReal *x,
                                                   PetscInt64 *folds);
-/* Places of a solid, three per local vertex, stretched so that their box is the unit cube; `is_box`: the solid's
-   boundary is that of the box. Collective. */
+/* Is a solid's boundary that of a box, however it stands? Then x, three per local vertex, are its places stretched to
+   the unit cube. Collective. */
 PETSC_INTERN PetscErrorCode EqmCubeFromBox(EqmMesh solid, PetscReal *x, PetscBool *is_box);
 /* From places of a closed surface on the sphere to places on the boundary of the unit cube, three per local vertex.
    Errors: EQM_ERR_MESH (the surface is too coarse). Collective. */
