@@ -7,6 +7,10 @@
 #include <equimap/soup.h>
 #include "mesh/cells.h"
 
+/* A cell of a lower quality than this is flat: rounding alone decides its measure. */
+#define EQM_FLAT_TRIANGLE    1e-13
+#define EQM_FLAT_TETRAHEDRON 1e-9
+
 /* The usable cells (existing, distinct vertices) around the vertices of this rank's slab. Local vertices: the slab's
    first, then ghosts by input number. A cell and an edge belong to the rank of their vertex of lowest input number. */
 typedef struct {

@@ -3,10 +3,6 @@
 #include "mesh/soup_private.h"
 #include "geometry/simplex.h"
 
-/* A cell of a lower quality than this is flat: rounding alone decides its measure. */
-#define EQM_FLAT_TRIANGLE    1e-13
-#define EQM_FLAT_TETRAHEDRON 1e-9
-
 /* Area of a triangle, or volume of a tetrahedron, negative if it is turned inside out. `quality` is 0 for a flat cell
    and 1 for an equilateral one: 4 sqrt(3) area / (sum of squared edges), or 12 (3 volume)^(2/3) / (sum of squared
    edges). Not collective. */

@@ -8,6 +8,7 @@
 static const EqmPrepareStep steps[] = {
     {"weld", "join boundary vertices at the same place, as seams of textures leave them", EqmStepWeld},
     {"split", "remove duplicate cells, cut non-manifold edges and vertices apart, turn what disagrees", EqmStepSplit},
+    {"flat", "flip or collapse triangles without area", EqmStepFlat},
     {"largest", "keep the largest piece (-piece K: the K-th)", EqmStepLargest},
     {"holes", "fill all boundary loops but the longest, for a sphere all", EqmStepHoles},
     {"handles", "cut small handles (-handle_length) and fill both sides", EqmStepHandles},
@@ -60,9 +61,9 @@ PetscErrorCode EqmPrepareSetFromOptions(PetscOptionItems *PetscOptionsObject, Eq
 {
   PetscFunctionBegin;
   PetscCall(PetscOptionsString("-prepare",
-                               "before the map: auto (what the mesh needs), none, or a list of weld, split, largest, "
-                               "holes, handles: join seams, cut non-manifold parts apart, keep the largest piece, fill "
-                               "holes, cut small handles",
+                               "before the map: auto (what the mesh needs), none, or a list of weld, split, flat, "
+                               "largest, holes, handles: join seams, cut non-manifold parts apart, flip or collapse "
+                               "flat triangles, keep the largest piece, fill holes, cut small handles",
                                NULL, options->steps, options->steps, sizeof(options->steps), NULL));
   PetscCall(PetscOptionsInt("-piece", "of -prepare largest: which piece to keep, 1 is the largest", NULL,
                             options->piece, &options->piece, NULL));

@@ -21,6 +21,7 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode EqmStepWeld(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
 PETSC_INTERN PetscErrorCode EqmStepSplit(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
+PETSC_INTERN PetscErrorCode EqmStepFlat(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
 PETSC_INTERN PetscErrorCode EqmStepLargest(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
 PETSC_INTERN PetscErrorCode EqmStepHoles(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);
 PETSC_INTERN PetscErrorCode EqmStepHandles(const EqmPrepareOptions *, EqmChange *, EqmPreparedStep *);

@@ -11,8 +11,10 @@ import h5py
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scans"))
+import made
 from evaluate import triangle_areas
-from meshes import write_obj
+from meshes import read_obj, write_obj
 from program import run_in_folder
 
 N = 20  # squares along a side
@@ -146,6 +148,31 @@ def test_seam(program):
     assert "-weld_tolerance" in wide.stderr
 
 
+def test_flat(program):
+    """Triangles without area: vertices on edges, and doubled vertices. The surface stays, the vertices keep their numbers."""
+    for name, make, count in (("caps", lambda: made.capped(made.FACE, 20), None), ("needles", lambda: made.needled(13, 13, 3), 16)):
+        points, cells = make()
+        points, cells = numpy.array(points), numpy.array(cells)
+        write_obj(program, "flat.obj", points, cells)
+        flat = int((areas(points, cells) < 1e-12).sum())
+        done = program.succeed("convert", "flat.obj", "mended.obj", "-prepare", "flat")
+        assert f"flat: {count or flat} triangles" in done.stdout, done.stdout  # a collapse mends two
+        program.succeed("convert", "flat.obj", "alone.obj", "-prepare", "flat", ranks=1)
+        with open("mended.obj") as one, open("alone.obj") as other:
+            assert one.read() == other.read(), "the same on any number of ranks"
+        places, mended = read_obj(program.file("mended.obj"))
+        size = areas(places, mended)
+        assert (places == points).all() and size.min() > 1e-6 and abs(size.sum() / areas(points, cells).sum() - 1) < 1e-12
+        program.succeed("disk", "flat.obj", "-prepare", "auto", "-o", "flat.h5", "-quiet", codes=(0, 4))
+        with h5py.File("flat.h5") as file:
+            image, parent = file["map/coordinates"][:], file["repaired/parent"][:]
+            assert (areas(file["repaired/coordinates"][:], file["repaired/cells"][:]) > 0).all() and (parent >= 0).all()
+        if name == "needles":
+            twins = numpy.arange(169, len(points))
+            original = [numpy.flatnonzero((points[:169] == points[k]).all(axis=1))[0] for k in twins]
+            assert (image[twins] == image[original]).all(), "both vertices of a needle have one image"
+
+
 def test_handle(program):
     """A sheet with a thin bridge between two of its squares: the handle is placed, refused while it is large, cut else."""
     points, cells = sheet(holes={(5, 10), (13, 10)})
@@ -187,7 +214,7 @@ def test_handle(program):
 def test_usage(program):
     points, cells, _, _ = scan()
     write_obj(program, "scan.obj", points, cells)
-    assert "weld, split, largest, holes, handles" in program.succeed("disk", "scan.obj", "-prepare", "mend", "-o", "t.h5", codes=(2,)).stderr
+    assert "weld, split, flat, largest, holes, handles" in program.succeed("disk", "scan.obj", "-prepare", "mend", "-o", "t.h5", codes=(2,)).stderr
     assert "there are only" in program.succeed("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "9", codes=(2,)).stderr
     done = program.succeed("convert", "scan.obj", "t.obj", "-prepare", "split,largest", "-piece", "3")
     assert " 2 triangles" in done.stdout, done.stdout  # the island; the fin is larger
@@ -198,6 +225,7 @@ def main(program):
     test_hole_weight(program)
     test_hole_weight_on_sphere(program)
     test_seam(program)
+    test_flat(program)
     test_handle(program)
     test_usage(program)
     print("prepare: holes filled, pieces left out, seams sewn, non-manifold parts cut apart")

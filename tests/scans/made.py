@@ -134,6 +134,38 @@ def handled(mesh, size):
     return points, cells
 
 
+def capped(mesh, every):
+    """On every so many of the inner edges a vertex that one of its triangles knows; the other has a flat one beside it."""
+    points, cells = list(mesh[0]), list(mesh[1])
+    beside, taken = {}, set()
+    for k, cell in enumerate(mesh[1]):
+        for i in range(3):
+            beside.setdefault(frozenset((cell[i], cell[(i + 1) % 3])), []).append((k, i))
+    for number, pair in enumerate(beside.values()):
+        if len(pair) < 2 or number % every or {pair[0][0], pair[1][0]} & taken:
+            continue
+        (k, i), (other, _) = pair
+        taken |= {k, other}
+        a, b, c = (cells[k][(i + step) % 3] for step in range(3))
+        points.append(tuple((x + y) / 2 for x, y in zip(points[a], points[b])))
+        cells[k] = (a, len(points) - 1, c)
+        cells += [(len(points) - 1, b, c), (a, b, len(points) - 1)]
+    return points, cells
+
+
+def needled(columns, rows, every):
+    """Vertices of a grid doubled where they are, with two triangles of no width between."""
+    points, cells = (list(x) for x in moved(grid(columns, rows), hill))
+    for row in range(1, rows - 1, every):
+        for column in range(1, columns - 1, every):
+            v, w = row * columns + column, len(points)
+            points.append(points[v])
+            above = {v + 1, v + columns + 1, v + columns, v - 1}
+            cells = [tuple(w if u == v else u for u in c) if v in c and set(c) - {v} <= above else c for c in cells]
+            cells += [(v, v + 1, w), (w, v - 1, v)]
+    return points, cells
+
+
 def ball_of_voxels(n):
     """A segmented volume: small cubes whose middle lies in a bumpy ball, six tetrahedra each."""
     def filled(i, j, k):
@@ -155,6 +187,8 @@ FILES = {
     "face_fin.obj": lambda: obj((FIN[0], FIN[1] + [(312, 313, len(FIN[0]) - 1)])),
     "face_quads.obj": lambda: obj(quads(20, 15)),
     "face_handle_small.obj": lambda: obj(handled(FACE, 0.12)),
+    "face_caps.obj": lambda: obj(capped(FACE, 20)),
+    "face_needles.obj": lambda: obj(needled(25, 25, 3)),
     "bowls_touching.obj": lambda: obj((FACE[0], [c for c in FACE[1] if not (FACE[0][c[0]][0] < 0.5) ^ (FACE[0][c[0]][1] < 0.5)])),
     "two_heads.off": lambda: off(together(HEAD, shifted(HEAD, FAR))),
     "head.white": lambda: freesurfer(HEAD),
