@@ -110,7 +110,7 @@ void EqmBalanceCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, Pe
   const PetscReal w = map->level->weight[cell], angle = .5 * EqmAngleFactor(map);
   const PetscReal *const p[3] = {map->x + dim * v[0], map->x + dim * v[1], map->x + dim * v[2]};
   PetscReal half[3], weight[3], worst = 0., row[6];
-  EqmResidual residual[2];
+  EqmLevelResidual residual[2];
   const PetscInt count = EqmLevelResiduals(dim, p[0], p[1], p[2], 1. / (map->total * w), residual);
   PetscInt first[3], size = 0;
 
@@ -134,6 +134,9 @@ void EqmBalanceCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, Pe
   AddLaplacian(map, weight, s, first, size);
 }
 
+/* Fewer are not worth the threads. */
+enum { LEAST_VERTICES = 4096 };
+
 typedef struct {
   EqmLevelMap *map;
   PetscInt coarser; /* levels for multigrid; 0: factor */
@@ -141,18 +144,28 @@ typedef struct {
   PetscReal *trial[2], damping, tolerance;
 } Newton;
 
+static void AssemblePiece(Newton *newton, PetscReal floor, PetscInt piece)
+{
+  const EqmLevelPieces *const pieces = &newton->system.cells;
+
+  for (PetscInt q = pieces->start[piece]; q < pieces->start[piece + 1]; q++) {
+    EqmCellSystem s;
+    EqmBalanceCell(newton->map, pieces->item[q], newton->damping, floor, &s);
+    EqmLevelSystemAdd(&newton->system, pieces->item[q], s.matrix, s.right);
+  }
+}
+
 /* The matrix at the present map. `success` is false where it is not definite. */
 static PetscErrorCode Assemble(Newton *newton, PetscReal residual, PetscBool *success)
 {
   const PetscReal floor = .3 * PetscSqrtReal(residual), shift = 1e-10;
-  EqmCellSystem s;
+  const EqmLevelPieces *const pieces = &newton->system.cells;
 
   PetscFunctionBegin;
   PetscCall(EqmLevelSystemClear(&newton->system));
-  for (PetscInt c = 0; c < newton->map->level->num_cells; c++) {
-    EqmBalanceCell(newton->map, c, newton->damping, floor, &s);
-    EqmLevelSystemAdd(&newton->system, c, s.matrix, s.right);
-  }
+#pragma omp parallel for schedule(dynamic) if (pieces->count > 1)
+  for (PetscInt k = 0; k < pieces->count; k++) AssemblePiece(newton, floor, k);
+  AssemblePiece(newton, floor, pieces->count); /* the cells between pieces */
   PetscCall(EqmLevelSystemEnd(&newton->system, shift, success));
   PetscFunctionReturn(0);
 }
@@ -191,6 +204,7 @@ static PetscErrorCode Move(const Newton *newton, PetscReal t, PetscReal *to)
   const PetscReal *const step = newton->system.solution;
 
   PetscFunctionBegin;
+#pragma omp parallel for schedule(static) if (map->level->num_vertices > LEAST_VERTICES)
   for (PetscInt v = 0; v < map->level->num_vertices; v++) {
     const EqmMotion motion = (EqmMotion)map->motion[v];
     PetscReal frame[6];
@@ -219,7 +233,7 @@ static PetscErrorCode Search(Newton *newton, EqmLevelValue *value, PetscReal *t)
   for (PetscInt n = 0; n < MOST_TRIALS; n++, s *= .5) {
     EqmLevelValue trial;
     PetscCall(Move(newton, s, newton->trial[0]));
-    trial = EqmLevelMapEvaluate(map, newton->trial[0]);
+    PetscCall(EqmLevelMapEvaluate(map, newton->trial[0], &trial));
     if (trial.objective < best.objective) {
       PetscReal *const swap = newton->trial[0];
       newton->trial[0] = newton->trial[1];
@@ -231,7 +245,7 @@ static PetscErrorCode Search(Newton *newton, EqmLevelValue *value, PetscReal *t)
     }
   }
   if (*t > 0.) PetscCall(PetscArraycpy(map->x, newton->trial[1], length));
-  *value = EqmLevelMapEvaluate(map, map->x);
+  PetscCall(EqmLevelMapEvaluate(map, map->x, value));
   PetscFunctionReturn(0);
 }
 
@@ -250,10 +264,11 @@ PetscErrorCode EqmBalanceLevel(EqmLevelMap *map, PetscInt coarser, const EqmBala
   const PetscInt n = map->level->num_vertices, length = map->dim * n;
   const PetscReal hopeless = 1e8;
   Newton newton = {.map = map, .coarser = coarser, .damping = options->damping, .tolerance = options->tolerance};
-  EqmLevelValue value = EqmLevelMapEvaluate(map, map->x);
+  EqmLevelValue value;
   unsigned char *count;
 
   PetscFunctionBegin;
+  PetscCall(EqmLevelMapEvaluate(map, map->x, &value));
   PetscCall(PetscMalloc1(n, &count));
   CountUnknowns(map, count);
   PetscCall(EqmLevelSystemCreate(map->level, count, &newton.system));

@@ -23,10 +23,12 @@ static const PetscReal epsilon_coarsest = .1;
 static PetscErrorCode PlaceTetrahedron(EqmLevelMap *map)
 {
   static const signed char corner[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  EqmLevelValue value;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < 12; k++) map->x[k] = corner[k / 3][k % 3] / PetscSqrtReal(3.);
-  if (EqmLevelMapEvaluate(map, map->x).folds > 0) {
+  PetscCall(EqmLevelMapEvaluate(map, map->x, &value));
+  if (value.folds > 0) {
     for (PetscInt v = 0; v < 4; v++) map->x[3 * v] *= -1.;
   }
   PetscFunctionReturn(0);
@@ -50,6 +52,7 @@ static PetscErrorCode BalanceCoarsest(EqmLevelMap *map, const EqmCascadeOptions 
 static PetscErrorCode MapCoarsest(EqmLevelMap *map, PetscInt last, const EqmCascadeOptions *options, PetscInt *which)
 {
   PetscInt k = last;
+  EqmLevelValue value;
 
   PetscFunctionBegin;
   if (map[last].dim == 3) {
@@ -58,7 +61,8 @@ static PetscErrorCode MapCoarsest(EqmLevelMap *map, PetscInt last, const EqmCasc
     while (k > 0 && map[k - 1].level->num_vertices <= options->coarsest) k--;
     for (; k <= last; k++) {
       PetscCall(EqmTutteLevel(&map[k]));
-      if (EqmLevelMapEvaluate(&map[k], map[k].x).folds == 0 || k == last) break;
+      PetscCall(EqmLevelMapEvaluate(&map[k], map[k].x, &value));
+      if (value.folds == 0 || k == last) break;
     }
   }
   PetscCall(BalanceCoarsest(&map[k], options));
@@ -72,7 +76,7 @@ static PetscErrorCode Show(const EqmCascadeOptions *options, EqmLevelMap *map, c
 
   PetscFunctionBegin;
   if (!options->trace) PetscFunctionReturn(0);
-  value = EqmLevelMapEvaluate(map, map->x);
+  PetscCall(EqmLevelMapEvaluate(map, map->x, &value));
   PetscCall(PetscPrintf(PETSC_COMM_SELF,
                         "  %8" PetscInt_FMT " vertices, %-12s %5" PetscInt_FMT
                         ": energy %.3e, objective %.3e, folds %" PetscInt_FMT ", worst quality %.2g\n",
@@ -100,11 +104,12 @@ static PetscErrorCode RelaxLevel(EqmLevelMap *map, PetscInt left, const EqmCasca
                                     .damping = .1},
                           multigrid = {.most_steps = options->steps, .gain = 1e-2, .damping = .03, .tolerance = .1};
   EqmLevelStars stars;
+  EqmLevelValue value;
 
   PetscFunctionBegin;
   PetscCall(EqmLevelStarsCreate(map->level, &stars));
   for (PetscInt s = 0; s < options->sweeps; s += 2) {
-    EqmLevelMapEvaluate(map, map->x);
+    PetscCall(EqmLevelMapEvaluate(map, map->x, &value)); /* for its total */
     PetscCall(EqmRelaxLevel(map, &stars, PetscMin(2, options->sweeps - s)));
   }
   PetscCall(Show(options, map, "sweeps", options->sweeps));
@@ -134,9 +139,10 @@ static PetscErrorCode CreateMaps(EqmHierarchy hierarchy, EqmCascadeTarget target
 /* The finest level's map goes to x, and all are freed. */
 static PetscErrorCode TakeFinest(EqmHierarchy hierarchy, EqmLevelMap *map, PetscReal *x, EqmCascadeResult *result)
 {
-  const EqmLevelValue value = EqmLevelMapEvaluate(&map[0], map[0].x);
+  EqmLevelValue value;
 
   PetscFunctionBegin;
+  PetscCall(EqmLevelMapEvaluate(&map[0], map[0].x, &value));
   result->folds = value.folds;
   result->energy = value.energy;
   result->objective = value.objective;
@@ -181,7 +187,7 @@ static PetscErrorCode RelaxFinest(EqmHierarchy hierarchy, EqmCascadeTarget targe
   PetscFunctionBegin;
   PetscCall(CreateMaps(hierarchy, target, x, map));
   map[0].epsilon = options->epsilon_finest;
-  value = EqmLevelMapEvaluate(&map[0], map[0].x);
+  PetscCall(EqmLevelMapEvaluate(&map[0], map[0].x, &value));
   result->before = value.objective;
   if (value.folds == 0) PetscCall(RelaxLevel(&map[0], hierarchy->num_levels - 1, options));
   PetscCall(TakeFinest(hierarchy, map, x, result));

@@ -23,6 +23,21 @@ typedef struct {
 PETSC_INTERN PetscBool EqmOrderSpokes(PetscInt count, EqmSpoke *spoke, EqmSpoke *scratch, PetscInt *place,
                                       PetscBool *closed);
 
+/* Work on a level in pieces that do not touch each other, one thread's each; what lies between pieces comes last, on
+   one thread. The pieces are runs of vertices, which are numbered along a curve; their number depends on the level
+   alone, so that the same bits come out for any number of threads. */
+enum { EQM_VERTICES_OF_PIECE = 8192 };
+typedef struct {
+  PetscInt count;         /* pieces */
+  PetscInt *start, *item; /* of piece k: item[start[k]] .., in ascending order; at `count` what is between them */
+} EqmLevelPieces;
+/* Sort `num` items, of which `piece` says where each belongs: EQM_BETWEEN_PIECES or the number of a piece. Not
+   collective. */
+enum { EQM_BETWEEN_PIECES = -1 };
+PETSC_INTERN PetscErrorCode EqmLevelPiecesCreate(PetscInt num_vertices, PetscInt num, const int *piece,
+                                                 EqmLevelPieces *pieces);
+PETSC_INTERN PetscErrorCode EqmLevelPiecesDestroy(EqmLevelPieces *pieces);
+
 /* 4 sqrt(3) area / (sum of squared edges) and twice the area's vector. */
 static inline PetscReal EqmTriangleQuality(const PetscReal *p, const PetscReal *q, const PetscReal *r,
                                            PetscReal normal[3])

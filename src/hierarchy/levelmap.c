@@ -82,29 +82,69 @@ static PetscReal CellDirichlet(const EqmLevelMap *map, const PetscReal *x, Petsc
   return sum;
 }
 
-EqmLevelValue EqmLevelMapEvaluate(EqmLevelMap *map, const PetscReal *x)
+/* Sums are taken piece by piece and then over the pieces, in one order for any number of threads. */
+enum { CELLS_OF_PIECE = 8192 };
+
+typedef struct {
+  PetscReal total, energy, residual, angle;
+  PetscInt folds;
+} PieceSums;
+
+static PetscReal PieceArea(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end)
+{
+  const PetscInt dim = map->dim;
+  PetscReal total = 0.;
+
+  for (PetscInt c = begin; c < end; c++) {
+    const PetscInt *const v = map->level->cells + 3 * c;
+    total += EqmLevelArea(dim, x + dim * v[0], x + dim * v[1], x + dim * v[2]);
+  }
+  return total;
+}
+
+/* The other sums, once `map->total` is known. */
+static void SumPiece(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end, PieceSums *sums)
 {
   const EqmHierarchyLevel *const level = map->level;
   const PetscInt dim = map->dim;
-  EqmLevelValue value = {.objective = 0., .residual = 0., .energy = 0., .folds = 0};
-  PetscReal total = 0., angle = 0.;
 
-  for (PetscInt c = 0; c < level->num_cells; c++) {
-    const PetscInt *const v = level->cells + 3 * c;
-    total += EqmLevelArea(dim, x + dim * v[0], x + dim * v[1], x + dim * v[2]);
-  }
-  map->total = total;
-  for (PetscInt c = 0; c < level->num_cells; c++) {
+  for (PetscInt c = begin; c < end; c++) {
     const PetscInt *const v = level->cells + 3 * c;
     const PetscReal *const p = x + dim * v[0], *const q = x + dim * v[1], *const r = x + dim * v[2];
-    const PetscReal share = total * level->weight[c], area = EqmLevelArea(dim, p, q, r);
-    EqmResidual residual[2];
+    const PetscReal share = map->total * level->weight[c], area = EqmLevelArea(dim, p, q, r);
+    EqmLevelResidual residual[2];
     const PetscInt count = EqmLevelResiduals(dim, p, q, r, 1. / share, residual);
-    value.folds += count < 0;
-    value.energy += share * PetscSqr(area / share - 1.);
-    for (PetscInt m = 0; m < count; m++) value.residual += level->weight[c] * PetscSqr(residual[m].rho);
-    if (map->epsilon > 0.) angle += CellDirichlet(map, x, c) - (dim == 2 ? area : 4. * PETSC_PI * level->weight[c]);
+    sums->folds += count < 0;
+    sums->energy += share * PetscSqr(area / share - 1.);
+    for (PetscInt m = 0; m < count; m++) sums->residual += level->weight[c] * PetscSqr(residual[m].rho);
+    if (map->epsilon > 0.)
+      sums->angle += CellDirichlet(map, x, c) - (dim == 2 ? area : 4. * PETSC_PI * level->weight[c]);
   }
-  value.objective = value.folds > 0 ? PETSC_INFINITY : value.residual + EqmAngleFactor(map) * angle;
-  return value;
+}
+
+PetscErrorCode EqmLevelMapEvaluate(EqmLevelMap *map, const PetscReal *x, EqmLevelValue *value)
+{
+  const PetscInt n = map->level->num_cells, cells = CELLS_OF_PIECE, num_pieces = (n + cells - 1) / cells;
+  PieceSums *piece, all = {.total = 0.};
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(num_pieces, &piece));
+#pragma omp parallel for schedule(dynamic) if (num_pieces > 1)
+  for (PetscInt k = 0; k < num_pieces; k++) piece[k].total = PieceArea(map, x, k * cells, PetscMin((k + 1) * cells, n));
+  for (PetscInt k = 0; k < num_pieces; k++) all.total += piece[k].total;
+  map->total = all.total;
+#pragma omp parallel for schedule(dynamic) if (num_pieces > 1)
+  for (PetscInt k = 0; k < num_pieces; k++) SumPiece(map, x, k * cells, PetscMin((k + 1) * cells, n), &piece[k]);
+  for (PetscInt k = 0; k < num_pieces; k++) {
+    all.folds += piece[k].folds;
+    all.energy += piece[k].energy;
+    all.residual += piece[k].residual;
+    all.angle += piece[k].angle;
+  }
+  PetscCall(PetscFree(piece));
+  *value = (EqmLevelValue){.objective = all.folds > 0 ? PETSC_INFINITY : all.residual + EqmAngleFactor(map) * all.angle,
+                           .residual = all.residual,
+                           .energy = all.energy,
+                           .folds = all.folds};
+  PetscFunctionReturn(0);
 }

@@ -43,7 +43,7 @@ PETSC_INTERN PetscErrorCode EqmLevelMapSetMotions(EqmLevelMap *map, EqmCascadeTa
 /* Motions and places of the vertices that the next coarser level has. Not collective. */
 PETSC_INTERN PetscErrorCode EqmLevelMapRestrict(const EqmLevelMap *finer, EqmLevelMap *coarser);
 /* Evaluate the objective at x instead of the map's own coordinates; sets `map->total`. Not collective. */
-PETSC_INTERN EqmLevelValue EqmLevelMapEvaluate(EqmLevelMap *map, const PetscReal *x);
+PETSC_INTERN PetscErrorCode EqmLevelMapEvaluate(EqmLevelMap *map, const PetscReal *x, EqmLevelValue *value);
 /* Half cotangents of a cell's angles on the surface, with slivers changed so that its Laplacian is bounded: positive
    semidefinite for any triangle. Not collective. */
 PETSC_INTERN void EqmHalfCotangents(const EqmHierarchyLevel *level, PetscInt cell, PetscReal half[3]);
@@ -71,22 +71,22 @@ static inline PetscReal EqmLevelArea(PetscInt dim, const PetscReal *p, const Pet
 typedef struct {
   PetscReal rho, slope;
   PetscBool of_area; /* else of the orientation */
-} EqmResidual;
+} EqmLevelResidual;
 
 /* Too large by its area: r - 1; too small by its orientation, so that it cannot fold: log r. In the plane one of the
    two, on the sphere both for long thin triangles. `scale`: 1 / (A w). Returns how many; -1 where the triangle is
    folded or so small that its sign is rounding. */
 static inline PetscInt EqmLevelResiduals(PetscInt dim, const PetscReal *p, const PetscReal *q, const PetscReal *r,
-                                         PetscReal scale, EqmResidual residual[2])
+                                         PetscReal scale, EqmLevelResidual residual[2])
 {
   const PetscReal least_ratio = 1e-14, small = scale * EqmLevelOrientation(dim, p, q, r),
                   large = dim == 2 ? small : scale * EqmArea3(p, q, r);
   PetscInt count = 0;
 
   if (!(small > least_ratio)) return -1;
-  if (large > 1.) residual[count++] = (EqmResidual){.rho = large - 1., .slope = scale, .of_area = PETSC_TRUE};
+  if (large > 1.) residual[count++] = (EqmLevelResidual){.rho = large - 1., .slope = scale, .of_area = PETSC_TRUE};
   if (small <= 1.)
-    residual[count++] = (EqmResidual){.rho = PetscLogReal(small), .slope = scale / small, .of_area = PETSC_FALSE};
+    residual[count++] = (EqmLevelResidual){.rho = PetscLogReal(small), .slope = scale / small, .of_area = PETSC_FALSE};
   return count;
 }
 

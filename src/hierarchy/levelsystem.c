@@ -1,6 +1,5 @@
 /* Linear systems on a level: the pattern, and the entries cell by cell. */
 #include "hierarchy/levelsystem.h"
-#include "hierarchy/level.h"
 
 /* The neighbours of a vertex and itself, ascending; `seen` is scratch. Returns how many. */
 static PetscInt Neighbours(const EqmHierarchyLevel *level, const EqmCorners *corners, PetscInt v, PetscInt *seen,
@@ -72,6 +71,23 @@ static PetscErrorCode MakePattern(EqmLevelSystem *system)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode MakePieces(EqmLevelSystem *system)
+{
+  const EqmHierarchyLevel *const level = system->level;
+  int *piece;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(level->num_cells, &piece));
+  for (PetscInt c = 0; c < level->num_cells; c++) {
+    const PetscInt *const v = level->cells + 3 * c, k = v[0] / EQM_VERTICES_OF_PIECE;
+    const PetscBool within = (PetscBool)(v[1] / EQM_VERTICES_OF_PIECE == k && v[2] / EQM_VERTICES_OF_PIECE == k);
+    piece[c] = within ? (int)k : EQM_BETWEEN_PIECES;
+  }
+  PetscCall(EqmLevelPiecesCreate(level->num_vertices, level->num_cells, piece, &system->cells));
+  PetscCall(PetscFree(piece));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmLevelSystemCreate(const EqmHierarchyLevel *level, const unsigned char *count, EqmLevelSystem *system)
 {
   const PetscInt n = level->num_vertices;
@@ -82,6 +98,7 @@ PetscErrorCode EqmLevelSystemCreate(const EqmHierarchyLevel *level, const unsign
   PetscCall(PetscArraycpy(system->count, count, n));
   PetscCall(PetscMalloc1(9 * level->num_cells, &system->offset));
   PetscCall(MakePattern(system));
+  PetscCall(MakePieces(system));
   PetscCall(PetscMalloc1(system->matrix.start[n], &system->matrix.entry));
   PetscCall(PetscMalloc1(2 * n, &system->right));
   PetscCall(PetscCalloc1(2 * n, &system->solution));
@@ -96,6 +113,7 @@ PetscErrorCode EqmLevelSystemDestroy(EqmLevelSystem *system)
   PetscCall(PetscFree(system->right));
   PetscCall(PetscFree(system->solution));
   PetscCall(PetscFree(system->offset));
+  PetscCall(EqmLevelPiecesDestroy(&system->cells));
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,7 @@
 #ifndef EQM_LEVELSYSTEM_H
 #define EQM_LEVELSYSTEM_H
 
+#include "hierarchy/level.h"
 #include "hierarchy/prolongation.h"
 
 typedef struct {
@@ -11,6 +12,7 @@ typedef struct {
   EqmBlockMatrix matrix;       /* columns ascending */
   PetscReal *right, *solution; /* two per vertex; zero in the place of unknowns that are not there */
   int *offset;                 /* 9 per cell: where in the row of corner a the column of corner b is, at 3 a + b */
+  EqmLevelPieces cells;        /* those of different pieces have no row in common */
 } EqmLevelSystem;
 
 /* `count` unknowns per vertex. Not collective. */

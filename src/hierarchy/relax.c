@@ -1,5 +1,6 @@
 /* Gauss-Seidel relaxation over the stars of vertices: one small Gauss-Newton system each, no fold ever. */
 #include "hierarchy/relax.h"
+#include <stdlib.h>
 
 /* Value and, unless `gradient` is NULL, gradient and Gauss-Newton matrix (rows of the upper triangle) in ambient
    coordinates. `dim` is a constant wherever this is called. */
@@ -12,7 +13,7 @@ static inline PetscReal StarValue(const PetscInt dim, const EqmStarImage *star, 
   for (PetscInt k = 0; k < dim * (dim + 1) / 2 && gradient; k++) matrix[k] = 0.;
   for (PetscInt j = 0; j < star->num_cells; j++) {
     const PetscReal *const p = star->ring[j], *const q = star->ring[j + 1 == star->size ? 0 : j + 1];
-    EqmResidual residual[2];
+    EqmLevelResidual residual[2];
     const PetscInt count = EqmLevelResiduals(dim, x, p, q, 1. / (star->total * star->weight[j]), residual);
     if (count < 0) return PETSC_INFINITY;
     if (star->area_varies) value -= star->balance * EqmLevelArea(dim, x, p, q);
@@ -156,6 +157,25 @@ static void FillStar(const EqmHierarchyLevel *level, PetscInt v, PetscInt count,
   if (!closed) ring[count] = spoke[count - 1].to;
 }
 
+/* A vertex is within a piece if its neighbours are. */
+static PetscErrorCode MakePieces(const EqmHierarchyLevel *level, EqmLevelStars *stars)
+{
+  int *piece;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(level->num_vertices, &piece));
+  for (PetscInt v = 0; v < level->num_vertices; v++) {
+    const PetscInt k = v / EQM_VERTICES_OF_PIECE;
+    piece[v] = (int)k;
+    for (PetscInt q = stars->start[v]; q < stars->start[v + 1]; q++) {
+      if (stars->ring[q] / EQM_VERTICES_OF_PIECE != k) piece[v] = EQM_BETWEEN_PIECES;
+    }
+  }
+  PetscCall(EqmLevelPiecesCreate(level->num_vertices, level->num_vertices, piece, &stars->vertices));
+  PetscCall(PetscFree(piece));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmLevelStarsCreate(const EqmHierarchyLevel *level, EqmLevelStars *stars)
 {
   const PetscInt length = 3 * level->num_cells + level->num_boundary;
@@ -180,6 +200,7 @@ PetscErrorCode EqmLevelStarsCreate(const EqmHierarchyLevel *level, EqmLevelStars
     FillStar(level, v, count, closed, spoke, stars->ring + at, stars->weight + at, stars->cotangent + at);
     stars->start[v + 1] = at + count + !closed;
   }
+  PetscCall(MakePieces(level, stars));
   PetscCall(PetscFree(place));
   PetscCall(PetscFree2(spoke, scratch));
   PetscCall(EqmCornersDestroy(&corners));
@@ -190,6 +211,7 @@ PetscErrorCode EqmLevelStarsDestroy(EqmLevelStars *stars)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree4(stars->start, stars->ring, stars->weight, stars->cotangent));
+  PetscCall(EqmLevelPiecesDestroy(&stars->vertices));
   PetscFunctionReturn(0);
 }
 
@@ -210,16 +232,42 @@ static void RelaxVertex(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt v
   EqmStarImageRelax(star, (EqmMotion)map->motion[v], 1, map->x + dim * v);
 }
 
+/* The vertices of a piece, forwards or backwards; `ring` is scratch. */
+static void RelaxPiece(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt piece, PetscBool backwards,
+                       PetscReal (*ring)[3])
+{
+  const EqmLevelPieces *const pieces = &stars->vertices;
+  const PetscInt begin = pieces->start[piece], count = pieces->start[piece + 1] - begin;
+  EqmStarImage star = {.dim = map->dim, .total = map->total, .balance = EqmAngleFactor(map), .ring = ring};
+
+  for (PetscInt k = 0; k < count; k++)
+    RelaxVertex(map, stars, pieces->item[begin + (backwards ? count - 1 - k : k)], &star);
+}
+
 PetscErrorCode EqmRelaxLevel(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt sweeps)
 {
-  EqmStarImage star = {.dim = map->dim, .total = map->total, .balance = EqmAngleFactor(map)};
-  const PetscInt n = map->level->num_vertices;
+  const PetscInt count = stars->vertices.count;
+  int bad = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(stars->most, &star.ring));
-  for (PetscInt s = 0; s < sweeps; s++) {
-    for (PetscInt k = 0; k < n; k++) RelaxVertex(map, stars, s % 2 ? n - 1 - k : k, &star);
+#pragma omp parallel if (count > 1)
+  {
+    PetscReal(*const ring)[3] = malloc((size_t)stars->most * sizeof(*ring));
+    if (!ring) {
+#pragma omp atomic write
+      bad = 1;
+    }
+    for (PetscInt s = 0; s < sweeps; s++) {
+      const PetscBool backwards = (PetscBool)(s % 2);
+#pragma omp for schedule(dynamic)
+      for (PetscInt k = 0; k < count; k++) {
+        if (ring) RelaxPiece(map, stars, k, backwards, ring);
+      }
+#pragma omp single
+      if (ring) RelaxPiece(map, stars, count, backwards, ring);
+    }
+    free(ring);
   }
-  PetscCall(PetscFree(star.ring));
+  PetscCheck(!bad, PETSC_COMM_SELF, PETSC_ERR_MEM, "too little memory for a sweep");
   PetscFunctionReturn(0);
 }

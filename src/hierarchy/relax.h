@@ -2,6 +2,7 @@
 #ifndef EQM_RELAX_H
 #define EQM_RELAX_H
 
+#include "hierarchy/level.h"
 #include "hierarchy/levelmap.h"
 
 typedef struct {
@@ -22,10 +23,12 @@ PETSC_INTERN void EqmStarImageRelax(const EqmStarImage *star, EqmMotion motion, 
 typedef struct {
   PetscInt *start, *ring, most;
   PetscReal *weight, *cotangent;
+  EqmLevelPieces vertices; /* those of different pieces are no neighbours */
 } EqmLevelStars;
 PETSC_INTERN PetscErrorCode EqmLevelStarsCreate(const EqmHierarchyLevel *level, EqmLevelStars *stars);
 PETSC_INTERN PetscErrorCode EqmLevelStarsDestroy(EqmLevelStars *stars);
-/* Relax each vertex once, in the level's order and then back, in turn: `sweeps` in all. Not collective. */
+/* Relax each vertex once, in the order within pieces and then back, in turn: `sweeps` in all. Never two neighbours at
+   the same time, which might fold. Not collective. */
 PETSC_INTERN PetscErrorCode EqmRelaxLevel(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt sweeps);
 
 #endif
