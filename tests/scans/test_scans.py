@@ -1,4 +1,4 @@
-"""What people have on their disks: every file of table.csv ends as its row says, each within a minute.
+"""What people have on their disks: every file of table.csv ends as its row says, each within a minute on one rank.
 
 usage: python3 test_scans.py EQUIMAP [RANKS] [all]
 
@@ -51,7 +51,7 @@ def judge(program, row, result, seconds):
         wrong.append("a result" if written else "no result")
     if row["says"] not in result.stderr:
         wrong.append(f"no word of '{row['says']}'")
-    if seconds > SECONDS:
+    if seconds > SECONDS and program.ranks == 1:  # several may share a core
         wrong.append(f"{seconds:.0f} seconds")
     if written and not wrong:
         summary = json.loads(program.read("map.json"))
