@@ -145,7 +145,7 @@ void EqmDrawConvergence(cairo_t *cairo, const EqmPage *page, EqmBox by_iteration
 
   if (count == 0 || PetscMalloc1(count, &values)) {
     EqmDrawText(cairo, by_iteration.x, by_iteration.y + 20, 13, PETSC_FALSE, EQM_LEFT, EQM_GREY,
-                "no history: this map was not made by iteration");
+                "the result holds no history of iterations");
     return;
   }
   EqmResultCurve(result, page->curve, values);
