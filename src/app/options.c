@@ -95,21 +95,26 @@ static PetscErrorCode HasCheckpoint(const char *file, PetscBool *there)
 
 PetscErrorCode EqmTakeResume(void)
 {
-  char file[PETSC_MAX_PATH_LEN];
-  PetscBool resume = PETSC_FALSE, has_checkpoint, restarts, there = PETSC_FALSE;
+  char file[PETSC_MAX_PATH_LEN], from[PETSC_MAX_PATH_LEN] = "";
+  PetscBool resume = PETSC_FALSE, has_checkpoint, restarts, automatic, there = PETSC_FALSE;
   PetscMPIInt rank;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-resume", &resume, NULL));
-  if (!resume) PetscFunctionReturn(0);
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", from, sizeof(from), &restarts));
+  automatic = (PetscBool)!strcmp(from, "auto"); /* another word for -resume */
+  if (!resume && !automatic) PetscFunctionReturn(0);
   PetscCall(PetscOptionsGetString(NULL, NULL, "-checkpoint", file, sizeof(file), &has_checkpoint));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-restart", &restarts));
-  if (!has_checkpoint || restarts)
-    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-resume goes with -checkpoint FILE, and without -restart");
+  if (!has_checkpoint || (restarts && !automatic))
+    EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "%s goes with -checkpoint FILE%s", automatic ? "-restart auto" : "-resume",
+            automatic ? "" : ", and without -restart");
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   if (rank == 0) PetscCall(HasCheckpoint(file, &there));
   PetscCallMPI(MPI_Bcast(&there, 1, MPIU_BOOL, 0, PETSC_COMM_WORLD));
-  if (there) PetscCall(PetscOptionsSetValue(NULL, "-restart", file));
+  if (there)
+    PetscCall(PetscOptionsSetValue(NULL, "-restart", file));
+  else if (automatic)
+    PetscCall(PetscOptionsClearValue(NULL, "-restart"));
   PetscFunctionReturn(0);
 }
 

@@ -25,7 +25,8 @@ static PetscErrorCode Check(MPI_Comm comm, const EqmSolverSettings *set)
 {
   PetscFunctionBegin;
   if (set->max_it < -1) EqmFail(comm, EQM_ERR_USAGE, "-max_it %" PetscInt_FMT ": give 0 or more", set->max_it);
-  if (set->energy_atol < 0.) EqmFail(comm, EQM_ERR_USAGE, "-energy_atol %.6g: give 0 or more", (double)set->energy_atol);
+  if (set->energy_atol < 0.)
+    EqmFail(comm, EQM_ERR_USAGE, "-energy_atol %.6g: give 0 or more", (double)set->energy_atol);
   if (set->wall_time < 0.)
     EqmFail(comm, EQM_ERR_USAGE, "-wall_time %.6g: give a number of seconds, 0 for no limit", (double)set->wall_time);
   if (set->checkpoint_every < -1)
@@ -58,7 +59,8 @@ static PetscErrorCode ReadRunOptions(EqmSolverSettings *set, PetscOptionItems *P
                             "write the checkpoint every so many iterations (-1: as often as takes 3 % of the time, 0: "
                             "only when the run stops)",
                             "EqmSolverSetFromOptions", set->checkpoint_every, &set->checkpoint_every, NULL));
-  PetscCall(PetscOptionsString("-restart", "go on from this checkpoint, or from the one before it if it is damaged",
+  PetscCall(PetscOptionsString("-restart",
+                               "go on from this checkpoint, or from the one before it if it is damaged; auto: -resume",
                                "EqmSolverSetFromOptions", set->restart, set->restart, sizeof(set->restart), NULL));
   PetscFunctionReturn(0);
 }

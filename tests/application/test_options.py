@@ -37,6 +37,7 @@ REFUSED = [
     (["disk", "mesh.obj", "-o", "x.h5,folder"], ["-o folder is a folder"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-summary", "folder"], ["-summary folder is a folder"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-resume"], ["-resume goes with -checkpoint"]),
+    (["disk", "mesh.obj", "-o", "x.h5", "-restart", "auto"], ["-restart auto goes with -checkpoint"]),
     (["convert", "mesh.obj", "x.obj", "-refine"], ["-refine needs a value"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-method", "fixedpoint"], ["-method fixedpoint", "did you mean fixed-point?"]),
     (["disk", "mesh.obj", "-o", "x.h5", "-start", "gaurded"], ["-start gaurded", "did you mean guarded?"]),
@@ -75,11 +76,13 @@ def check_resume(program):
     """The same command begins, and goes on where it stopped: to the same map as in one go."""
     run = ["disk", "mesh.obj", "-energy_rtol", 0, "-ratio_tol", 0]
     program.succeed(*run, "-o", "whole.h5", "-max_it", 4, codes=(4,))
-    for max_it in (2, 4):
-        program.succeed(*run, "-o", "resumed.h5", "-max_it", max_it, "-checkpoint", "run.ck", "-resume", codes=(4,))
-    with h5py.File(program.file("whole.h5")) as whole, h5py.File(program.file("resumed.h5")) as resumed:
-        assert resumed["history/iteration"][...].tolist() == [0, 1, 2, 3, 4]
-        assert abs(whole["map/coordinates"][...] - resumed["map/coordinates"][...]).max() == 0
+    for words in (["-resume"], ["-restart", "auto"]):
+        checkpoint = words[-1].strip("-") + ".ck"
+        for max_it in (2, 4):
+            program.succeed(*run, "-o", "resumed.h5", "-max_it", max_it, "-checkpoint", checkpoint, *words, codes=(4,))
+        with h5py.File(program.file("whole.h5")) as whole, h5py.File(program.file("resumed.h5")) as resumed:
+            assert resumed["history/iteration"][...].tolist() == [0, 1, 2, 3, 4]
+            assert abs(whole["map/coordinates"][...] - resumed["map/coordinates"][...]).max() == 0
 
 
 def check_log_view(program):
