@@ -6,6 +6,7 @@
 #include "hierarchy/levelsystem.h"
 #include "hierarchy/prolongation.h"
 #include "hierarchy/relax.h"
+#include <omp.h>
 
 /* A surface, its levels and a map of the finest. */
 typedef struct {
@@ -503,8 +504,34 @@ static PetscErrorCode TestNeedles(const char *shape, EqmCascadeTarget target, Pe
   PetscFunctionReturn(0);
 }
 
+/* Several pieces on each of the finer levels, and cells and vertices between them: the same bits for any number of
+   threads. */
+static PetscErrorCode TestThreads(const char *shape, EqmCascadeTarget target)
+{
+  const int threads = omp_get_max_threads();
+  Case one, three;
+  PetscBool same;
+
+  PetscFunctionBegin;
+  omp_set_num_threads(1);
+  PetscCall(CaseGenerate(PETSC_COMM_WORLD, shape, 20000, target, &one));
+  omp_set_num_threads(3);
+  PetscCall(CaseGenerate(PETSC_COMM_WORLD, shape, 20000, target, &three));
+  omp_set_num_threads(threads);
+  CHECK(one.hierarchy->level[0].num_vertices > 2 * EQM_VERTICES_OF_PIECE, "one piece");
+  PetscCall(PetscArraycmp(one.x, three.x, one.domain->dim * one.hierarchy->level[0].num_vertices, &same));
+  CHECK(same, "three threads' map differs from that of one");
+  CHECK(one.result.folds == 0 && one.result.energy < .1, "energy %g, %d folds", (double)one.result.energy,
+        (int)one.result.folds);
+  PetscCall(CaseDestroy(&one));
+  PetscCall(CaseDestroy(&three));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
+  PetscMPIInt size;
+
   PetscFunctionBeginUser;
   PetscCall(EqmInitialize(&argc, &argv));
   PetscCall(TestSlopes("hills", EQM_TARGET_DISK));
@@ -528,6 +555,8 @@ int main(int argc, char **argv)
   PetscCall(TestCapsule());
   PetscCall(TestNeedles("hills", EQM_TARGET_DISK, .1));
   PetscCall(TestNeedles("head", EQM_TARGET_SPHERE, 1000.));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  if (size == 1) PetscCall(TestThreads("hills", EQM_TARGET_DISK)); /* the hierarchy is on one rank */
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
