@@ -112,6 +112,9 @@ PETSC_EXTERN PetscErrorCode EqmDomainMove(EqmDomain domain, const EqmPlace *from
 /* From a gradient in ambient coordinates (dim per owned vertex) to degrees of freedom. Not collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainProject(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient,
                                              Vec dofs);
+/* The same, added to what `dofs` has. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmDomainAddProjected(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient,
+                                                  Vec dofs);
 /* From degrees of freedom to ambient velocities of all local vertices, ghosts included. Collective. */
 PETSC_EXTERN PetscErrorCode EqmDomainExpand(EqmDomain domain, const EqmPlace *place, Vec dofs, PetscReal *ambient);
 /* Second derivative of the geodesics with the given ambient velocities: zero but on curved parts. Not collective. */

@@ -140,10 +140,18 @@ PetscErrorCode EqmPlaceMakeFrames(EqmDomain domain, EqmPlace *place)
 
 PetscErrorCode EqmDomainProject(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient, Vec dofs)
 {
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(dofs));
+  PetscCall(EqmDomainAddProjected(domain, place, ambient, dofs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmDomainAddProjected(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient, Vec dofs)
+{
   PetscScalar *g;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(dofs, &g));
+  PetscCall(VecGetArray(dofs, &g));
 #pragma omp parallel for schedule(static)
   for (PetscInt v = 0; v < domain->mesh->num_owned; v++) {
     PetscReal frame[9];
@@ -151,10 +159,10 @@ PetscErrorCode EqmDomainProject(EqmDomain domain, const EqmPlace *place, const P
     for (PetscInt k = 0; k < count; k++) {
       PetscReal sum = 0.;
       for (PetscInt c = 0; c < domain->dim; c++) sum += frame[domain->dim * k + c] * ambient[domain->dim * v + c];
-      g[domain->dof_start[v] - domain->dof_first + k] = sum;
+      g[domain->dof_start[v] - domain->dof_first + k] += sum;
     }
   }
-  PetscCall(VecRestoreArrayWrite(dofs, &g));
+  PetscCall(VecRestoreArray(dofs, &g));
   PetscFunctionReturn(0);
 }
 

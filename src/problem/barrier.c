@@ -109,7 +109,6 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   const EqmMesh mesh = problem->mesh;
   const EqmBarrier barrier = (EqmBarrier)term;
   PetscReal local, sum;
-  Vec part;
 
   PetscFunctionBegin;
   local = AddCells(barrier, mesh, place->x, image);
@@ -120,10 +119,7 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   PetscCall(MPIU_Allreduce(&local, &sum, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
   *value += barrier->total * sum;
   if (!gradient) PetscFunctionReturn(0);
-  PetscCall(VecDuplicate(gradient, &part));
-  PetscCall(EqmDomainProject(problem->domain, place, barrier->ambient, part));
-  PetscCall(VecAXPY(gradient, 1., part));
-  PetscCall(VecDestroy(&part));
+  PetscCall(EqmDomainAddProjected(problem->domain, place, barrier->ambient, gradient));
   PetscFunctionReturn(0);
 }
 

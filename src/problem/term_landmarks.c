@@ -9,7 +9,6 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   const EqmLandmarks *const landmarks = &problem->landmarks;
   const EqmDomain domain = problem->domain;
   PetscReal squares, *ambient;
-  Vec part;
 
   PetscFunctionBegin;
   (void)image;
@@ -17,11 +16,8 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   *value += term->weight * squares;
   if (!gradient) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(domain->dim * problem->mesh->num_owned, &ambient));
-  PetscCall(VecDuplicate(gradient, &part));
   EqmLandmarksAddGradient(landmarks, domain, place->x, 2. * term->weight, ambient);
-  PetscCall(EqmDomainProject(domain, place, ambient, part));
-  PetscCall(VecAXPY(gradient, 1., part));
-  PetscCall(VecDestroy(&part));
+  PetscCall(EqmDomainAddProjected(domain, place, ambient, gradient));
   PetscCall(PetscFree(ambient));
   PetscFunctionReturn(0);
 }

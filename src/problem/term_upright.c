@@ -26,7 +26,6 @@ static PetscErrorCode AddTransposed(EqmProblem problem, const EqmPlace *place, c
   const EqmMesh mesh = problem->mesh;
   const PetscInt n = problem->domain->dim * mesh->num_owned;
   PetscReal *slope, *by_area, *by_det;
-  Vec part;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(mesh->num_local_cells, &slope, n, &by_area, n, &by_det));
@@ -35,10 +34,7 @@ static PetscErrorCode AddTransposed(EqmProblem problem, const EqmPlace *place, c
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) slope[c] = factor * mesh->weight[c] * value[c] / half_det[c];
   PetscCall(EqmImageGradientOf(problem->domain, EQM_MEASURE_HALF_DET, place, slope, by_det));
   for (PetscInt k = 0; k < n; k++) by_area[k] += by_det[k];
-  PetscCall(VecDuplicate(result, &part));
-  PetscCall(EqmDomainProject(problem->domain, place, by_area, part));
-  PetscCall(VecAXPY(result, 1., part));
-  PetscCall(VecDestroy(&part));
+  PetscCall(EqmDomainAddProjected(problem->domain, place, by_area, result));
   PetscCall(PetscFree3(slope, by_area, by_det));
   PetscFunctionReturn(0);
 }

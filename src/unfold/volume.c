@@ -10,7 +10,6 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   const PetscReal target = problem->domain->target_measure;
   PetscReal *slope, *ambient;
   EqmImageTotals totals;
-  Vec part;
 
   PetscFunctionBegin;
   PetscCall(EqmImageSum(mesh, image, &totals));
@@ -19,10 +18,7 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   PetscCall(PetscMalloc2(mesh->num_local_cells, &slope, problem->domain->dim * mesh->num_owned, &ambient));
   for (PetscInt c = 0; c < mesh->num_local_cells; c++) slope[c] = -2. * term->weight * (target - totals.total) / target;
   PetscCall(EqmImageGradient(problem->domain, place, slope, ambient));
-  PetscCall(VecDuplicate(gradient, &part));
-  PetscCall(EqmDomainProject(problem->domain, place, ambient, part));
-  PetscCall(VecAXPY(gradient, 1., part));
-  PetscCall(VecDestroy(&part));
+  PetscCall(EqmDomainAddProjected(problem->domain, place, ambient, gradient));
   PetscCall(PetscFree2(slope, ambient));
   PetscFunctionReturn(0);
 }
