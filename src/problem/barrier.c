@@ -83,15 +83,23 @@ static PetscReal AddCells(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, 
   return sum / mesh->num_cells;
 }
 
-/* The cells between the centre and the boundary's triangles: their gradients at owned vertices go to `ambient`. */
-static PetscReal AddBoundary(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscReal *ambient)
+/* The cells between the centre and the boundary's triangles. */
+static PetscReal SumBoundary(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x)
 {
   PetscReal sum = 0.;
 
   for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
+    if (barrier->counts[f]) sum += EqmBarrierOfCell(barrier, EqmBarrierFacetRatio(barrier, mesh, x, f), 0.).value;
+  }
+  return sum / barrier->num_facets;
+}
+
+/* Their gradients at owned vertices. */
+static void AddBoundaryGradient(EqmBarrier barrier, EqmMesh mesh, const PetscReal *x, PetscReal *ambient)
+{
+  for (PetscInt f = 0; f < mesh->num_boundary_facets; f++) {
     const PetscInt *const v = mesh->boundary_facets + 3 * f;
     const EqmBarrierTerm term = EqmBarrierOfCell(barrier, EqmBarrierFacetRatio(barrier, mesh, x, f), 0.);
-    if (barrier->counts[f]) sum += term.value;
     for (PetscInt a = 0; a < 3; a++) {
       PetscReal normal[3];
       if (v[a] >= mesh->num_owned) continue;
@@ -100,7 +108,6 @@ static PetscReal AddBoundary(EqmBarrier barrier, EqmMesh mesh, const PetscReal *
         ambient[3 * v[a] + k] += term.first * normal[k] / (6. * barrier->share[f] * barrier->num_facets);
     }
   }
-  return sum / barrier->num_facets;
 }
 
 static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *place, const PetscReal *image,
@@ -111,14 +118,14 @@ static PetscErrorCode Add(EqmTerm term, EqmProblem problem, const EqmPlace *plac
   PetscReal local, sum;
 
   PetscFunctionBegin;
-  local = AddCells(barrier, mesh, place->x, image);
-  PetscCall(EqmImageGradient(problem->domain, place, barrier->slope, barrier->ambient));
-  PetscCall(EqmLaplacianApply(mesh, barrier->flow, 3, place->x, barrier->part));
-  for (PetscInt k = 0; k < 3 * mesh->num_owned; k++) barrier->ambient[k] += barrier->part[k];
-  local += AddBoundary(barrier, mesh, place->x, barrier->ambient);
+  local = AddCells(barrier, mesh, place->x, image) + SumBoundary(barrier, mesh, place->x);
   PetscCall(MPIU_Allreduce(&local, &sum, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
   *value += barrier->total * sum;
   if (!gradient) PetscFunctionReturn(0);
+  PetscCall(EqmImageGradient(problem->domain, place, barrier->slope, barrier->ambient));
+  PetscCall(EqmLaplacianApply(mesh, barrier->flow, 3, place->x, barrier->part));
+  for (PetscInt k = 0; k < 3 * mesh->num_owned; k++) barrier->ambient[k] += barrier->part[k];
+  AddBoundaryGradient(barrier, mesh, place->x, barrier->ambient);
   PetscCall(EqmDomainAddProjected(problem->domain, place, barrier->ambient, gradient));
   PetscFunctionReturn(0);
 }
