@@ -90,7 +90,9 @@ static PetscErrorCode SolveGroup(EqmMethod method, EqmIterate iterate, signed ch
 }
 
 /* 000 (14b): where the boundary would follow the interior, inverted in the circle, centred (14d): two columns on the
-   owned boundary vertices. A vertex at the very centre is everywhere far out: it draws nowhere. */
+   owned boundary vertices. A vertex at the centre is everywhere far out: it draws nowhere. One so near to it that
+   rounding decides on the direction would draw all of the boundary far to one side, and centring it again leave that
+   rounding. */
 static PetscErrorCode FollowInterior(EqmMethod method, EqmIterate iterate)
 {
   FixedPoint *const fp = method->data;
@@ -101,7 +103,7 @@ static PetscErrorCode FollowInterior(EqmMethod method, EqmIterate iterate)
   PetscFunctionBegin;
   for (PetscInt v = 0; v < mesh->num_local; v++) {
     const PetscReal *const x = iterate->place.x + 2 * v, squared = x[0] * x[0] + x[1] * x[1];
-    const PetscBool draws = (PetscBool)(fp->group[v] == 0 && squared > PETSC_MACHINE_EPSILON * PETSC_MACHINE_EPSILON);
+    const PetscBool draws = (PetscBool)(fp->group[v] == 0 && squared > PETSC_MACHINE_EPSILON);
     for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = draws ? x[c] / squared : 0.;
   }
   PetscCall(SolveGroup(method, iterate, 1, fp->inverted));
