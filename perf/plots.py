@@ -38,9 +38,9 @@ def growth(axes, tables, exponent):
     for (part, label), color in zip((("growth", "surfaces"), ("solids", "solids")), COLORS):
         rows = tables.get(part, [])
         if rows:
-            axes.loglog([int(row["mesh.vertices"]) for row in rows], [float(row["seconds.total"]) for row in rows], "o-",
+            axes.loglog([int(row["mesh.vertices"]) for row in rows], [float(row["cpu_seconds"]) for row in rows], "o-",
                         color=color, label=f"{label}: power {exponent(rows):.2f}")
-    axes.set(title="growth", xlabel="vertices", ylabel="seconds")
+    axes.set(title="growth", xlabel="vertices", ylabel="seconds of the processor")
 
 
 def memory(axes, tables):
@@ -60,17 +60,40 @@ def scaling(axes, rows, title, weak, efficiencies):
     axes.set(title=f"{title}, ranks x threads", xlabel="cores asked for", ylabel="efficiency", ylim=(0., 1.15))
 
 
+def peers(axes, rows):
+    """Seconds and how far areas are off: below and to the left is better."""
+    rows = [row for row in rows if row["ratio_sd"]]
+    for row, color in zip(rows, COLORS):
+        axes.loglog(float(row["seconds"]), float(row["ratio_sd"]), "o", color=color,
+                    label=f"{row['program']}, {float(row['angle_error_deg']):.0f}°")
+    axes.set(title=f"programs, {int(rows[0]['vertices']):,} vertices, angle error" if rows else "", xlabel="seconds",
+             ylabel="standard deviation of the area ratios")
+
+
+def model(axes, rows):
+    """Measured over modelled, for each quantity, by ranks."""
+    quantities = list(dict.fromkeys((row["command"], row["quantity"]) for row in rows if row["ratio"]))
+    markers = "os^dv*P"
+    for k, (command, quantity) in enumerate(quantities):
+        points = [(int(row["ranks"]), float(row["ratio"])) for row in rows
+                  if (row["command"], row["quantity"]) == (command, quantity) and row["ratio"]]
+        axes.plot(*zip(*points), marker=markers[k % len(markers)], linestyle="-" if command == "disk" else ":",
+                  color=COLORS[k % len(COLORS)], label=f"{command}: {quantity.replace('_', ' ')}")
+    axes.set_xscale("log", base=2)
+    axes.set(title="the model", xlabel="ranks", ylabel="measured / model")
+    axes.set_ylim(bottom=0.)
+
+
 def draw(tables, name, exponent, efficiencies):
     """All that the tables allow, on one page."""
-    figure, grid = pyplot.subplots(2, 3, figsize=(14, 8), layout="constrained")
+    figure, grid = pyplot.subplots(2, 4, figsize=(19, 8.5), layout="constrained")
     panels = list(grid.flat)
-    if "kernels" in tables:
-        kernels(panels[0], tables["kernels"])
-    if "growth" in tables:
-        phases(panels[1], tables["growth"])
-    growth(panels[2], tables, exponent)
-    memory(panels[3], tables)
-    for axes, part in zip(panels[4:], ("strong", "weak")):
+    for axes, part, paint in zip(panels, ("kernels", "growth", "peers", "model"), (kernels, phases, peers, model)):
+        if part in tables:
+            paint(axes, tables[part])
+    growth(panels[4], tables, exponent)
+    memory(panels[5], tables)
+    for axes, part in zip(panels[6:], ("strong", "weak")):
         if part in tables:
             scaling(axes, tables[part], f"{part} scaling", part == "weak", efficiencies)
     for axes in panels:
@@ -78,6 +101,6 @@ def draw(tables, name, exponent, efficiencies):
         axes.grid(True, color="0.9")
         axes.set_axisbelow(True)
         if axes.get_legend_handles_labels()[0]:
-            axes.legend(framealpha=.9, fontsize=8)
+            axes.legend(framealpha=.9, fontsize=7)
     figure.savefig(name, dpi=120)
     pyplot.close(figure)
