@@ -81,7 +81,7 @@ def model(axes, rows):
                   color=COLORS[k % len(COLORS)], label=f"{command}: {quantity.replace('_', ' ')}")
     axes.set_xscale("log", base=2)
     axes.set(title="the model", xlabel="ranks", ylabel="measured / model")
-    axes.set_ylim(bottom=0.)
+    axes.set_ylim(0., 1.8 * max((float(row["ratio"]) for row in rows if row["ratio"]), default=1.))  # room for the legend
 
 
 def draw(tables, name, exponent, efficiencies):
@@ -101,6 +101,6 @@ def draw(tables, name, exponent, efficiencies):
         axes.grid(True, color="0.9")
         axes.set_axisbelow(True)
         if axes.get_legend_handles_labels()[0]:
-            axes.legend(framealpha=.9, fontsize=7)
+            axes.legend(framealpha=.9, fontsize=7, ncols=2 if axes is panels[3] else 1)
     figure.savefig(name, dpi=120)
     pyplot.close(figure)
