@@ -37,9 +37,11 @@ def efficiencies(rows, weak):
 
 def growth_lines(part, rows):
     last = rows[-1]
-    return [f"{part}: the processor's seconds grow as vertices to the power {exponent(rows):.2f} ({rows[0]['mesh.vertices']} to "
-            f"{last['mesh.vertices']} vertices, {float(last['cpu_seconds']):.1f} s at the largest), bytes to the power "
-            f"{exponent(rows, 'memory_bytes.total'):.2f}",
+    grown = [] if len(rows) < 2 else [
+        f"{part}: the processor's seconds grow as vertices to the power {exponent(rows):.2f} ({rows[0]['mesh.vertices']} to "
+        f"{last['mesh.vertices']} vertices, {float(last['cpu_seconds']):.1f} s at the largest), bytes to the power "
+        f"{exponent(rows, 'memory_bytes.total'):.2f}"]
+    return [*grown,
             f"{part}: at {last['mesh.vertices']} vertices " + ", ".join(
                 f"{key.split('.')[1]} {100. * float(last[key]) / float(last['seconds.total']):.0f} %" for key in last
                 if key.startswith("seconds.") and key.split(".")[1] not in ("total", "fastest", "slowest") and float(last[key]) > 0.)]
