@@ -132,6 +132,7 @@ def check_beside(program):
     others = [picture(program, "hills.h5", *options) for options in (
         ("-start", "start.h5"), ("-lines", "lines.csv"), ("-sharp", "5"), ("-convergence", "excess"), ("-convergence", "gradient"))]
     assert len({plain, *others}) == 6
+    assert picture(program, "pair.h5") != picture(program, "pair.h5", "-lines", "lines.csv")  # of check_kinds
     program.succeed("generate", "hills", "-n", "700", "-o", "other.obj")
     program.succeed("disk", "other.obj", "-o", "other.h5", "-max_it", "0", codes=(4,))
     for wrong in (("hills.h5", "-start", "other.h5"), ("hills.h5", "start.h5", "-start", "start.h5"), ("hills.h5", "-lines", "wrong.csv"),
