@@ -1,11 +1,63 @@
-/* PLY, binary little endian, with fields as properties. Texture coordinates become s and t (floats), u and v (doubles)
-   of the vertices, or, where there are seams, a list texcoord of the faces, as MeshLab has it. */
+/* PLY, binary little endian, or text where the name ends in .text.ply, with fields as properties. Texture coordinates
+   become s and t (floats), u and v (doubles) of the vertices, or, where there are seams, a list texcoord of the faces,
+   as MeshLab has it. */
 #include "writers.h"
 #include "input.h"
 #include "scalar.h"
 #include "seam.h"
 
 #include <string.h>
+
+/* Where numbers go, and in which form. */
+typedef struct {
+  EqmAtomicFile *file;
+  PetscBool text;
+} Sink;
+
+static Sink SinkOf(EqmAtomicFile *file)
+{
+  static const char ending[] = ".text.ply";
+  const size_t length = strlen(file->path), wanted = sizeof(ending) - 1;
+
+  return (Sink){file, length > wanted && !strcmp(file->path + length - wanted, ending) ? PETSC_TRUE : PETSC_FALSE};
+}
+
+static void PutDouble(Sink to, double value)
+{
+  if (to.text)
+    EqmAtomicPrint(to.file, "%.17g ", value);
+  else
+    EqmAtomicWrite(to.file, &value, sizeof(value));
+}
+
+static void PutFloat(Sink to, float value)
+{
+  if (to.text)
+    EqmAtomicPrint(to.file, "%.9g ", (double)value);
+  else
+    EqmAtomicWrite(to.file, &value, sizeof(value));
+}
+
+static void PutByte(Sink to, unsigned char value)
+{
+  if (to.text)
+    EqmAtomicPrint(to.file, "%d ", (int)value);
+  else
+    EqmAtomicWrite(to.file, &value, 1);
+}
+
+static void PutInteger(Sink to, int32_t value)
+{
+  if (to.text)
+    EqmAtomicPrint(to.file, "%d ", (int)value);
+  else
+    EqmAtomicWrite(to.file, &value, sizeof(value));
+}
+
+static void EndRow(Sink to)
+{
+  if (to.text) EqmAtomicPrint(to.file, "\n");
+}
 
 /* Colours are bytes, or the programs that show them do not take them for colours. */
 static PetscBool IsColour(const EqmField *field)
@@ -47,25 +99,23 @@ static const EqmField *FindQuality(const EqmField *fields, PetscInt num_fields, 
   return found;
 }
 
-static void WriteFields(EqmAtomicFile *file, const EqmField *fields, PetscInt num_fields, PetscBool on_cells,
-                        PetscInt row)
+static void WriteFields(Sink to, const EqmField *fields, PetscInt num_fields, PetscBool on_cells, PetscInt row)
 {
   const EqmField *const quality = FindQuality(fields, num_fields, on_cells);
 
   for (PetscInt f = 0; f < num_fields; ++f) {
     const size_t width = (size_t)fields[f].width;
-    const unsigned char byte = IsColour(&fields[f]) ? ToByte(fields[f].values[row]) : 0;
+    const PetscReal *const values = fields[f].values + width * (size_t)row;
 
     if (fields[f].on_cells != on_cells) continue;
-    if (IsColour(&fields[f]))
-      EqmAtomicWrite(file, &byte, 1);
-    else
-      EqmAtomicWrite(file, fields[f].values + width * (size_t)row, width * sizeof(double));
+    for (size_t k = 0; k < width; ++k) {
+      if (IsColour(&fields[f]))
+        PutByte(to, ToByte(values[k]));
+      else
+        PutDouble(to, values[k]);
+    }
   }
-  if (quality) {
-    const float value = (float)quality->values[row];
-    EqmAtomicWrite(file, &value, sizeof(value));
-  }
+  if (quality) PutFloat(to, (float)quality->values[row]);
 }
 
 typedef enum { TEXTURE_NONE, TEXTURE_OF_VERTICES, TEXTURE_OF_CORNERS } Texture;
@@ -81,8 +131,8 @@ static void PrintFieldHeaders(EqmAtomicFile *file, const EqmField *fields, Petsc
 static void PrintHeader(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
                         Texture texture)
 {
-  EqmAtomicPrint(file, "ply\nformat binary_little_endian 1.0\ncomment equimap %s\nelement vertex %lld\n", EqmVersion(),
-                 (long long)mesh->num_vertices);
+  EqmAtomicPrint(file, "ply\nformat %s 1.0\ncomment equimap %s\nelement vertex %lld\n",
+                 SinkOf(file).text ? "ascii" : "binary_little_endian", EqmVersion(), (long long)mesh->num_vertices);
   EqmAtomicPrint(file, "property double x\nproperty double y\nproperty double z\n");
   if (texture == TEXTURE_OF_VERTICES) /* MeshLab takes floats by the one name, and no others; doubles for all digits */
     EqmAtomicPrint(file, "property float s\nproperty float t\nproperty double u\nproperty double v\n");
@@ -103,24 +153,27 @@ static PetscErrorCode ChooseTexture(const EqmSerialMesh *mesh, EqmSeams *seams, 
   return 0;
 }
 
-static void WriteFace(EqmAtomicFile *file, const EqmSerialMesh *mesh, PetscInt i, Texture texture)
+static void WriteVertex(Sink to, const EqmSerialMesh *mesh, PetscInt i, const PetscReal *uv)
 {
-  const PetscInt *cell = mesh->cells + 3 * (size_t)i;
-  const int32_t corners[3] = {(int32_t)cell[0], (int32_t)cell[1], (int32_t)cell[2]};
-  float uv[6];
-
-  EqmAtomicWrite(file, "\3", 1);
-  EqmAtomicWrite(file, corners, sizeof(corners));
-  if (texture != TEXTURE_OF_CORNERS) return;
-  for (size_t k = 0; k < 6; ++k) uv[k] = (float)mesh->texture[6 * (size_t)i + k];
-  EqmAtomicWrite(file, "\6", 1);
-  EqmAtomicWrite(file, uv, sizeof(uv));
+  for (size_t k = 0; k < 3; ++k) PutDouble(to, mesh->vertices[3 * (size_t)i + k]);
+  for (size_t k = 0; k < 2 && uv; ++k) PutFloat(to, (float)uv[k]);
+  for (size_t k = 0; k < 2 && uv; ++k) PutDouble(to, uv[k]);
 }
 
-/* EqmWritePly - write a binary PLY file. See EqmWriter. */
+static void WriteFace(Sink to, const EqmSerialMesh *mesh, PetscInt i, Texture texture)
+{
+  PutByte(to, 3);
+  for (size_t k = 0; k < 3; ++k) PutInteger(to, (int32_t)mesh->cells[3 * (size_t)i + k]);
+  if (texture != TEXTURE_OF_CORNERS) return;
+  PutByte(to, 6);
+  for (size_t k = 0; k < 6; ++k) PutFloat(to, (float)mesh->texture[6 * (size_t)i + k]);
+}
+
+/* EqmWritePly - write a PLY file. See EqmWriter. */
 PetscErrorCode EqmWritePly(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
                            char *error, size_t error_length)
 {
+  const Sink to = SinkOf(file);
   EqmSeams seams;
   Texture texture;
 
@@ -128,18 +181,14 @@ PetscErrorCode EqmWritePly(EqmAtomicFile *file, const EqmSerialMesh *mesh, const
   EqmTry(ChooseTexture(mesh, &seams, &texture));
   PrintHeader(file, mesh, fields, num_fields, texture);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
-    EqmAtomicWrite(file, mesh->vertices + 3 * (size_t)i, 3 * sizeof(double));
-    if (texture == TEXTURE_OF_VERTICES) {
-      const double *const uv = seams.point + 2 * (size_t)i;
-      const float st[2] = {(float)uv[0], (float)uv[1]};
-      EqmAtomicWrite(file, st, sizeof(st));
-      EqmAtomicWrite(file, uv, 2 * sizeof(double));
-    }
-    WriteFields(file, fields, num_fields, PETSC_FALSE, i);
+    WriteVertex(to, mesh, i, texture == TEXTURE_OF_VERTICES ? seams.point + 2 * (size_t)i : NULL);
+    WriteFields(to, fields, num_fields, PETSC_FALSE, i);
+    EndRow(to);
   }
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    WriteFace(file, mesh, i, texture);
-    WriteFields(file, fields, num_fields, PETSC_TRUE, i);
+    WriteFace(to, mesh, i, texture);
+    WriteFields(to, fields, num_fields, PETSC_TRUE, i);
+    EndRow(to);
   }
   return EqmSeamsReset(&seams);
 }

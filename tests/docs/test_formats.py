@@ -208,6 +208,23 @@ def check_textures_in_meshlab(program):
         assert abs(found["/cell/texcoord"][...].reshape(-1, 3, 2) - images[cells]).max() < 1e-6
 
 
+def check_text(program):
+    """The same as text, to the last digit; meshio finds values of vertices and faces."""
+    program.succeed("generate", "head", "-n", 200, "-o", "scan.ply")
+    program.succeed("sphere", "scan.ply", "-o", "image.h5,image.text.ply", "-quiet", codes=(0, 4))
+    assert program.read("image.text.ply").startswith(b"ply\nformat ascii 1.0\n") and not program.read("scan.ply").startswith(b"ply\nformat ascii")
+    program.succeed("convert", "image.text.ply", "again.h5")
+    with h5py.File(program.file("image.h5")) as ours, h5py.File(program.file("again.h5")) as read:
+        assert (read["/mesh/vertices"][...] == ours["/map/coordinates"][...]).all()
+        assert (read["/cell/ratio"][...] == ours["/cell/ratio"][...]).all()
+    if "meshio" in available(False):
+        import meshio
+        mesh = meshio.read(program.file("image.text.ply"))
+        with h5py.File(program.file("image.h5")) as ours:
+            assert (mesh.cell_data["ratio"][0] == ours["/cell/ratio"][...]).all()
+            assert (mesh.point_data["vertex_ratio"] == ours["/vertex/ratio"][...]).all()
+
+
 def check_quality(program, has_meshlab):
     """The ratio under the name by which MeshLab colours, and still under its own; MeshLab finds it."""
     program.succeed("generate", "head", "-n", 200, "-o", "scan.ply")
@@ -241,6 +258,7 @@ def main():
         if "Blender" in there:
             run_blender(program, [file_name(kind, suffix) for kind, suffix, reader in wanted if reader == "Blender"])
             check_textures(program)
+        check_text(program)
         check_quality(program, "MeshLab" in there)
         if "MeshLab" in there:
             check_textures_in_meshlab(program)
