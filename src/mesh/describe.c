@@ -65,7 +65,7 @@ static const Phrase phrases[] = {
     {EQM_FINDING_HOLES, 4, MINDED_BY_ALL, SHOW_ONE,
      "there is 1 cavity inside, with one vertex of each boundary surface named",
      "there are {n} cavities inside, with one vertex of each boundary surface named",
-     "fill the cavities with tetrahedra"},
+     "-prepare auto fills round ones; fill others with tetrahedra"},
     {EQM_FINDING_GENUS, 3, MINDED_BY_ALL, SHOW_LOOP, "the surface has 1 handle, like a cup",
      "the surface has {n} handles", "cut or fill the handles; tiny ones are often errors of a scan"},
     {EQM_FINDING_GENUS, 4, MINDED_BY_ALL, SHOW_NOTHING, "the solid has 1 tunnel through it",

@@ -12,3 +12,20 @@ PetscErrorCode EqmChangeAssemble(EqmChange *change, EqmVertexGroup *added, EqmCe
   PetscCall(EqmSoupAssemble(&change->soup, added ? 2 : 1, groups, list, &change->parent));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode EqmChangeWeighAdded(EqmChange *change, PetscReal weight)
+{
+  const EqmSoup soup = change->soup;
+  const PetscInt num_cells = soup->cell_end - soup->cell_start;
+
+  PetscFunctionBegin;
+  if (weight == 1.) PetscFunctionReturn(0);
+  if (!soup->density) {
+    PetscCall(PetscMalloc1(num_cells + 1, &soup->density));
+    for (PetscInt c = 0; c < num_cells; c++) soup->density[c] = 1.;
+  }
+  for (PetscInt c = 0; c < num_cells; c++) {
+    if (change->parent[c] < 0) soup->density[c] = weight;
+  }
+  PetscFunctionReturn(0);
+}

@@ -110,23 +110,6 @@ static PetscErrorCode KeepCells(const EqmBoundary *boundary, EqmChange *change, 
   PetscFunctionReturn(0);
 }
 
-/* The cells that fill holes weigh `weight` times their area. */
-static PetscErrorCode WeighFilling(EqmSoup soup, const PetscInt *parent, PetscReal weight)
-{
-  const PetscInt num_cells = soup->cell_end - soup->cell_start;
-
-  PetscFunctionBegin;
-  if (weight == 1.) PetscFunctionReturn(0);
-  if (!soup->density) {
-    PetscCall(PetscMalloc1(num_cells + 1, &soup->density));
-    for (PetscInt c = 0; c < num_cells; c++) soup->density[c] = 1.;
-  }
-  for (PetscInt c = 0; c < num_cells; c++) {
-    if (parent[c] < 0) soup->density[c] = weight;
-  }
-  PetscFunctionReturn(0);
-}
-
 /* `count` is of loops. All are filled for a target that takes closed surfaces only, else all but the longest. */
 PetscErrorCode EqmStepHoles(const EqmPrepareOptions *options, EqmChange *change, EqmPreparedStep *report)
 {
@@ -140,7 +123,10 @@ PetscErrorCode EqmStepHoles(const EqmPrepareOptions *options, EqmChange *change,
   PetscInt64 count[3] = {0, 0, 0}; /* loops, triangles, vertices */
 
   PetscFunctionBegin;
-  if (change->soup->cell_size != 3) PetscFunctionReturn(0);
+  if (change->soup->cell_size == 4) {
+    PetscCall(EqmFillCavities(options, change, report));
+    PetscFunctionReturn(0);
+  }
   PetscCall(EqmVicinityCreate(change->soup, &vicinity));
   PetscCall(EqmBoundaryGather(&vicinity, &boundary));
   PetscCall(EqmVicinityReset(&vicinity));
@@ -157,7 +143,7 @@ PetscErrorCode EqmStepHoles(const EqmPrepareOptions *options, EqmChange *change,
                             " new vertices",
                             count[0], count[1], count[2]));
     PetscCall(EqmChangeAssemble(change, &group, &list));
-    PetscCall(WeighFilling(change->soup, change->parent, options->hole_weight));
+    PetscCall(EqmChangeWeighAdded(change, options->hole_weight));
   }
   PetscCall(PetscFree(group.position));
   PetscCall(EqmBoundaryReset(&boundary));

@@ -30,6 +30,12 @@ PETSC_INTERN PetscErrorCode EqmStepRepair(const EqmPrepareOptions *, EqmChange *
 /* Replace the soup of a change by one with these added vertices and the cells of the list. Collective. */
 PETSC_INTERN PetscErrorCode EqmChangeAssemble(EqmChange *change, EqmVertexGroup *added, EqmCellList *list);
 
+/* The cells that a step has just added weigh `weight` times their measure. Not collective. */
+PETSC_INTERN PetscErrorCode EqmChangeWeighAdded(EqmChange *change, PetscReal weight);
+/* What `holes` does for solids. */
+PETSC_INTERN PetscErrorCode EqmFillCavities(const EqmPrepareOptions *options, EqmChange *change,
+                                            EqmPreparedStep *report);
+
 /* A boundary edge with its position, surface on its left. */
 typedef struct {
   PetscInt tail, head;

@@ -16,6 +16,7 @@ import made
 from evaluate import triangle_areas
 from meshes import read_obj, write_obj
 from program import run_in_folder
+from shapes import bricks
 
 N = 20  # squares along a side
 
@@ -173,6 +174,25 @@ def test_flat(program):
             assert (image[twins] == image[original]).all(), "both vertices of a needle have one image"
 
 
+def test_cavities(program):
+    """Cavities of a solid are filled around a vertex in their middle; one that is bent too much for that is left."""
+    bent = {(5, 1, 1), (5, 2, 1), (6, 1, 1), (7, 1, 1), (7, 2, 1)}
+    for name, wrong, left in (("two", {(1, 1, 1), (3, 2, 1)}, 0), ("bent", {(1, 1, 1), *bent}, 1)):
+        points, cells = bricks((9, 4, 3), lambda i, j, k: (i, j, k) not in wrong)
+        program.write("solid.mesh", made.medit((points, cells)))
+        done = program.succeed("convert", "solid.mesh", f"{name}.h5", "-prepare", "holes")
+        program.succeed("convert", "solid.mesh", "alone.h5", "-prepare", "holes", ranks=1)
+        assert f"{2 - left} cavities filled with {12 * (2 - left)} tetrahedra" in done.stdout, done.stdout
+        with h5py.File(f"{name}.h5") as file, h5py.File("alone.h5") as other:
+            vertices, tets = file["mesh/vertices"][:], file["mesh/cells"][:]
+            assert (vertices == other["mesh/vertices"][:]).all() and (tets == other["mesh/cells"][:]).all(), "the same on any number of ranks"
+        corner = vertices[tets]
+        volume = numpy.linalg.det(corner[:, 1:] - corner[:, :1]) / 6
+        assert (volume > 0).all() and abs(volume.sum() - (108 - 5 * left)) < 1e-12 and (vertices[: len(points)] == points).all()
+        told = program.run("check", f"{name}.h5").stdout
+        assert ("boundary surfaces 2" if left else "boundary surfaces 1") in told, told
+
+
 def test_handle(program):
     """A sheet with a thin bridge between two of its squares: the handle is placed, refused while it is large, cut else."""
     points, cells = sheet(holes={(5, 10), (13, 10)})
@@ -226,6 +246,7 @@ def main(program):
     test_hole_weight_on_sphere(program)
     test_seam(program)
     test_flat(program)
+    test_cavities(program)
     test_handle(program)
     test_usage(program)
     print("prepare: holes filled, pieces left out, seams sewn, non-manifold parts cut apart")

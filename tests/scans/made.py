@@ -201,4 +201,5 @@ FILES = {
     "voxels.mesh": lambda: medit(ball_of_voxels(8)),
     "voxels_island.mesh": lambda: medit(together(ball_of_voxels(8), shifted(bricks((1, 1, 1)), (20.0, 0, 0)))),
     "voxels_cavity.mesh": lambda: medit(bricks((3, 3, 3), lambda i, j, k: (i, j, k) != (1, 1, 1))),
+    "voxels_cavity_bent.mesh": lambda: medit(bricks((5, 4, 3), lambda i, j, k: (i, j, k) not in [(1, 2, 1), (1, 1, 1), (2, 1, 1), (3, 1, 1), (3, 2, 1)])),
 }
