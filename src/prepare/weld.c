@@ -29,7 +29,7 @@ static PetscErrorCode JoinPoints(PetscInt n, Point *point, PetscReal distance, P
   PetscInt *set, *lowest;
 
   PetscFunctionBegin;
-  qsort(point, (size_t)n, sizeof(Point), ComparePlaces);
+  if (n > 0) qsort(point, (size_t)n, sizeof(Point), ComparePlaces); /* not NULL */
   PetscCall(PetscMalloc2(n, &set, n, &lowest));
   for (PetscInt i = 0; i < n; i++) {
     set[i] = i;
