@@ -3,6 +3,7 @@
 #include "start/start.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
+#include <stdint.h>
 
 /* How far off a side of the box, in its width, a vertex may be. */
 static const PetscReal tolerance = 1e-9;
@@ -30,7 +31,7 @@ static PetscErrorCode FindBox(EqmMesh mesh, const PetscReal *x, PetscReal low[3]
    NULL: among all. Zero if there is none. */
 static PetscErrorCode FirstNormal(EqmMesh mesh, const PetscReal *x, const PetscReal *other, PetscReal normal[3])
 {
-  PetscInt64 first = PETSC_MAX_INT, lowest;
+  PetscInt64 first = INT64_MAX, lowest;
   PetscReal mine[3] = {0., 0., 0.};
 
   PetscFunctionBegin;
