@@ -23,13 +23,15 @@ static PetscErrorCode Reset(Curves *curves)
 static PetscErrorCode Read(EqmRegistration r, const EqmSide *side, const char *file, Curves *curves)
 {
   EqmTable table;
+  PetscMPIInt count;
 
   PetscFunctionBegin;
   PetscCall(EqmTableRead(r->comm, file, 2, 2,
                          "a line of a curve is the curve's number and a vertex, in their order along the curve",
                          &table));
+  PetscCall(PetscMPIIntCast(2 * table.rows, &count));
   if (side->mesh->rank != 0) PetscCall(PetscMalloc1(2 * table.rows, &table.values));
-  PetscCallMPI(MPI_Bcast(table.values, (PetscMPIInt)(2 * table.rows), MPIU_REAL, 0, r->comm));
+  PetscCallMPI(MPI_Bcast(table.values, count, MPIU_REAL, 0, r->comm));
   curves->num = table.rows;
   PetscCall(PetscMalloc4(table.rows, &curves->curve, table.rows, &curves->vertex, table.rows, &curves->at,
                          3 * table.rows, &curves->position));
