@@ -1,4 +1,4 @@
-/* How close the loops over cells come to the memory's bandwidth: bench_kernels [-n 1000000] [-shape hills]
+/* How close the loops over cells, and solves, come to the memory's bandwidth: bench_kernels [-n 1000000] [-shape hills]
    [-only NAME] [-max_threads N] [-repetitions 7] [-triad_mib M] [-json FILE]
 
    The bandwidth is that of the triad a = b + s c (McCalpin's STREAM), on arrays much larger than the last cache, by the
@@ -7,10 +7,10 @@
    a vertex does for its six triangles, is free; what is fetched twice is the kernel's own fault and lowers its figure.
 
    Before every timed repetition the triad's arrays are swept, so that nothing of the mesh is left in a large cache: a
-   mesh of a million vertices fits in the last cache of a server. The best repetition counts. */
-#include <equimap.h>
+   mesh of a million vertices fits in the last cache of a server. The best repetition counts. With one thread the
+   seconds are the processor's, so that a busy machine lengthens them less. */
+#include "bench.h"
 #include "mesh/mesh_private.h"
-#include "linalg/linalg.h"
 #include <cjson/cJSON.h>
 #include <omp.h>
 #include <stdio.h>
@@ -18,31 +18,10 @@
 #include <string.h>
 #include <unistd.h>
 
-typedef struct {
-  char shape[32], only[32], json[PETSC_MAX_PATH_LEN];
-  PetscInt n, repetitions, max_threads, triad_mib;
-} Options;
-
-/* Everything that a kernel may read or write. */
-typedef struct {
-  EqmMesh mesh;
-  EqmDomain domain;
-  EqmPlace place;
-  EqmAssembly assembly;
-  unsigned char *ones;
-  PetscReal *image, *slope, *first, *second;               /* per local cell */
-  PetscReal *weights;                                      /* 3 per local cell */
-  PetscReal *velocity, *acceleration, *gradient, *applied; /* 2 per local vertex */
-  double nonzeros;                                         /* of the assembled matrix */
-  size_t triad_length;
-  PetscReal *triad[3];
-  double bandwidth; /* of the triad, bytes per second */
-} Bench;
-
 /* Compulsory bytes per cell, per vertex, per visit of a cell by a block of vertices (its entry in the block's list),
-   per nonzero of the assembled matrix. */
+   per nonzero of the assembled matrix, and of its factor. */
 typedef struct {
-  double cell, vertex, visit, nonzero;
+  double cell, vertex, visit, nonzero, factor;
 } Traffic;
 
 typedef struct {
@@ -102,19 +81,24 @@ static PetscErrorCode RunApply(Bench *b)
   PetscFunctionReturn(0);
 }
 
-static void CellLaplacian(void *context, PetscInt cell, PetscReal *matrix)
-{
-  const PetscReal *const w = (const PetscReal *)context + 3 * cell;
-
-  for (PetscInt a = 0; a < 3; a++) {
-    for (PetscInt b = 0; b < 3; b++) matrix[3 * a + b] = a == b ? w[(a + 1) % 3] + w[(a + 2) % 3] : -w[3 - a - b];
-  }
-}
-
 static PetscErrorCode RunAssembly(Bench *b)
 {
   PetscFunctionBegin;
-  PetscCall(EqmAssemblyFill(b->assembly, CellLaplacian, b->weights));
+  PetscCall(EqmAssemblyFill(b->assembly, BenchCellLaplacian, b->weights));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunSolveOne(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLinearSolve(b->linear, 1, b->velocity, b->applied));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunSolveTwo(Bench *b)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLinearSolve(b->linear, 2, b->velocity, b->applied));
   PetscFunctionReturn(0);
 }
 
@@ -147,6 +131,9 @@ static const Kernel kernels[] = {
     {"EqmAssemblyFill",
      RunAssembly,
      {.cell = 3 * INDEX + 3 * REAL + INDEX + 6 * (2 * REAL + COUNT), .vertex = INDEX + 1, .nonzero = REAL + COUNT}},
+    /* the factor forwards and backwards | right-hand side, solution */
+    {"EqmLinearSolve/1", RunSolveOne, {.vertex = 2 * REAL, .factor = 2 * REAL}},
+    {"EqmLinearSolve/2", RunSolveTwo, {.vertex = 4 * REAL, .factor = 2 * REAL}},
 };
 enum { NUM_KERNELS = sizeof(kernels) / sizeof(kernels[0]) };
 
@@ -155,104 +142,13 @@ static double Bytes(const Bench *b, const Traffic *traffic)
   const EqmMesh mesh = b->mesh;
 
   return traffic->cell * mesh->num_local_cells + traffic->vertex * mesh->num_local +
-         traffic->visit * mesh->block_start[mesh->num_blocks] + traffic->nonzero * b->nonzeros;
+         traffic->visit * mesh->block_start[mesh->num_blocks] + traffic->nonzero * b->nonzeros +
+         traffic->factor * b->factor_nonzeros;
 }
 
 /* ---- the machine */
 
-/* One sweep; the best of the sweeps with as many threads gives the bandwidth. */
-static void Triad(Bench *b)
-{
-  PetscReal *const restrict a = b->triad[0];
-  const PetscReal *const restrict x = b->triad[1], *const restrict y = b->triad[2];
-  const double begin = MPI_Wtime();
-
-#pragma omp parallel for schedule(static)
-  for (size_t k = 0; k < b->triad_length; k++) a[k] = x[k] + 3. * y[k];
-  b->bandwidth = PetscMax(b->bandwidth, 3. * sizeof(PetscReal) * (double)b->triad_length / (MPI_Wtime() - begin));
-}
-
-/* Four times the last cache per array, unless the user says otherwise. */
-static PetscErrorCode TriadCreate(const Options *options, Bench *b)
-{
-  const long cache = sysconf(_SC_LEVEL3_CACHE_SIZE);
-  const size_t mib = options->triad_mib > 0 ? (size_t)options->triad_mib : PetscMax(256, 4 * (size_t)cache >> 20);
-
-  PetscFunctionBegin;
-  b->triad_length = (mib << 20) / sizeof(PetscReal);
-  for (int k = 0; k < 3; k++) PetscCall(PetscMalloc1(b->triad_length, &b->triad[k]));
-#pragma omp parallel for schedule(static)
-  for (size_t i = 0; i < b->triad_length; i++) b->triad[0][i] = b->triad[1][i] = b->triad[2][i] = 1.;
-  PetscFunctionReturn(0);
-}
-
 /* ---- the mesh */
-
-static PetscErrorCode FillArrays(Bench *b)
-{
-  const EqmMesh mesh = b->mesh;
-
-  PetscFunctionBegin;
-  PetscCall(EqmPlaceCreate(b->domain, &b->place));
-  PetscCall(PetscMalloc4(2 * mesh->num_local, &b->velocity, 2 * mesh->num_local, &b->acceleration, 2 * mesh->num_local,
-                         &b->gradient, 2 * mesh->num_local, &b->applied));
-  PetscCall(PetscMalloc5(mesh->num_local_cells, &b->image, mesh->num_local_cells, &b->slope, mesh->num_local_cells,
-                         &b->first, mesh->num_local_cells, &b->second, 3 * mesh->num_local_cells, &b->weights));
-  for (PetscInt k = 0; k < 2 * mesh->num_local; k++) {
-    b->place.x[k] = mesh->position[3 * (k / 2) + k % 2]; /* seen from above: any map will do */
-    b->velocity[k] = PetscSinReal((PetscReal)k);
-    b->acceleration[k] = PetscCosReal((PetscReal)k);
-  }
-  PetscCall(PetscArraycpy(b->slope, mesh->weight, mesh->num_local_cells));
-  PetscCall(RunMeasure(b));
-  PetscCall(RunCotangents(b));
-  PetscFunctionReturn(0);
-}
-
-/* The scalar Laplacian, its lower triangle as the direct solvers take it. */
-static PetscErrorCode MakeAssembly(Bench *b)
-{
-  const EqmMesh mesh = b->mesh;
-  EqmUnknowns unknowns = {.num_owned = mesh->num_owned, .first = mesh->vertex_start, .start = mesh->global};
-  MatInfo info;
-  Mat matrix;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(mesh->num_local, &b->ones));
-  for (PetscInt v = 0; v < mesh->num_local; v++) b->ones[v] = 1;
-  unknowns.count = b->ones;
-  PetscCall(EqmAssemblyCreate(mesh, &unknowns, EQM_STORE_LOWER, &b->assembly));
-  PetscCall(EqmAssemblyGetMat(b->assembly, &matrix));
-  PetscCall(MatGetInfo(matrix, MAT_LOCAL, &info));
-  b->nonzeros = info.nz_used;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BenchCreate(const Options *options, EqmLedger ledger, EqmSoup *soup, Bench *b)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, options->shape, options->n, 1, soup));
-  PetscCall(EqmMeshCreate(*soup, ledger, &b->mesh));
-  PetscCall(EqmDomainCreateDisk(b->mesh, &b->domain));
-  PetscCall(FillArrays(b));
-  PetscCall(MakeAssembly(b));
-  PetscCall(TriadCreate(options, b));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BenchDestroy(Bench *b)
-{
-  PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) PetscCall(PetscFree(b->triad[k]));
-  PetscCall(EqmAssemblyDestroy(&b->assembly));
-  PetscCall(PetscFree(b->ones));
-  PetscCall(PetscFree5(b->image, b->slope, b->first, b->second, b->weights));
-  PetscCall(PetscFree4(b->velocity, b->acceleration, b->gradient, b->applied));
-  PetscCall(EqmPlaceDestroy(&b->place));
-  PetscCall(EqmDomainDestroy(&b->domain));
-  PetscCall(EqmMeshDestroy(&b->mesh));
-  PetscFunctionReturn(0);
-}
 
 /* ---- the measurement */
 
@@ -261,10 +157,10 @@ static PetscErrorCode TimeKernel(Bench *b, const Kernel *kernel, PetscInt repeti
   PetscFunctionBegin;
   *seconds = PETSC_MAX_REAL;
   for (PetscInt r = 0; r < repetitions; r++) {
-    Triad(b);
-    const double begin = MPI_Wtime();
+    BenchTriad(b);
+    const double begin = BenchSeconds();
     PetscCall(kernel->run(b));
-    *seconds = PetscMin(*seconds, MPI_Wtime() - begin);
+    *seconds = PetscMin(*seconds, BenchSeconds() - begin);
   }
   PetscFunctionReturn(0);
 }

@@ -20,7 +20,7 @@ INDICES = "indices of 32 bits: build with 64"
 CELLS_PER_VERTEX = {2: 2., 3: 5.5}
 # What the machine of the prediction is taken to do; the program's own figures are in docs/performance.md.
 FLOPS = 1e10              # a second, of one core in dense kernels
-STREAM = 1e10             # bytes a second, of one core from memory
+STREAM = 7e9              # bytes a second of a factor, of one core in a solve
 NETWORK = 5e9             # bytes a second, of one link
 LATENCY = 2e-6            # seconds of a message; a reduction takes log2 of the ranks of them
 MEMORY = 4e9              # bytes that a rank may have
