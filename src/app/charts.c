@@ -77,10 +77,11 @@ PetscErrorCode EqmPiecesCharts(const EqmPieces *pieces, EqmMap *charts)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, soup->comm));
   PetscCall(EqmMapCreate(soup, 2, charts));
   for (PetscInt k = 0; k < 2 * count; k++) {
+    const PetscInt piece = pieces->vertex[k / 2];
     const PetscReal x = pieces->map->coordinates[k], unit = least < 0. ? .5 * (1. + x) : x; /* the disk has radius 1 */
-    const Chart *const to = &chart[place[PetscMax(pieces->vertex[k / 2], 1)]];
 
-    if (!pieces->vertex[k / 2]) continue;
+    if (!piece) continue;
+    const Chart *const to = &chart[place[piece]];
     (*charts)->coordinates[k] = (k % 2 ? to->y : to->x) + scale * to->side * (margin + (1. - 2. * margin) * unit);
   }
   PetscCall(PetscFree2(chart, place));

@@ -201,29 +201,6 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
   PetscFunctionReturn(0);
 }
 
-/* 001 Table 4, for the map that was found. */
-static PetscErrorCode TakeEigenvalues(const MapOptions *options, EqmLedger ledger, EqmSolver solver, EqmMap map)
-{
-  const PetscInt wanted = options->hessian_eigenvalues;
-  PetscReal *values;
-  PetscInt found;
-
-  PetscFunctionBegin;
-  if (wanted == 0) PetscFunctionReturn(0);
-  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_MEASURE));
-  PetscCall(PetscMalloc1(wanted, &values));
-  PetscCall(options->hessian ? EqmSolverStretchHessianEigenvalues(solver, wanted, values, &found)
-                             : EqmSolverHessianEigenvalues(solver, wanted, values, &found));
-  PetscCall(EqmMapAddText(map, "hessian", hessians[options->hessian]));
-  PetscCall(EqmMapSetHessianEigenvalues(map, found, values));
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_MEASURE));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\nsmallest eigenvalues of the Hessian:"));
-  for (PetscInt k = 0; k < found; k++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, " %.4e", (double)values[k]));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, found < wanted ? " (the others not found)\n" : "\n"));
-  PetscCall(PetscFree(values));
-  PetscFunctionReturn(0);
-}
-
 /* From the mesh that is mapped to the map of the mesh that was given. */
 static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *options, EqmLedger ledger,
                             const EqmIntake *input, EqmStatus *status)
@@ -234,7 +211,8 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscFunctionBegin;
   PetscCall(EqmMapRunSolve(line->command, input, &options->stop_file, ledger, &run));
   PetscCall(EqmMapRunWithoutSplits(line->command, &options->input, input, &options->stop_file, ledger, &run, &whole));
-  PetscCall(TakeEigenvalues(options, ledger, run.solver, run.map));
+  PetscCall(
+      EqmMapTakeEigenvalues(options->hessian_eigenvalues, hessians[options->hessian], ledger, run.solver, run.map));
   PetscCall(Write(options, ledger, run.map, run.map));
   PetscCall(EqmMapGetStatus(run.map, status, NULL));
   PetscCall(EqmMapPrintResult((PetscBool)(options->input.quiet || whole.mapped),

@@ -23,6 +23,10 @@ PETSC_INTERN PetscErrorCode EqmMapRunSolve(const char *command, const EqmIntake 
 PETSC_INTERN PetscErrorCode EqmMapRunWithoutSplits(const char *command, const EqmIntakeOptions *options,
                                                    const EqmIntake *input, const EqmStopFile *stop_file,
                                                    EqmLedger ledger, EqmMapRun *run, EqmIntake *whole);
+/* 001 Table 4, for the map that was found: so many of the smallest eigenvalues of the Hessian called "energy" or
+   "appendix-b", into the map and printed. Collective. */
+PETSC_INTERN PetscErrorCode EqmMapTakeEigenvalues(PetscInt wanted, const char *hessian, EqmLedger ledger,
+                                                  EqmSolver solver, EqmMap map);
 /* Print the result table: the map of the file's mesh, and that of the prepared mesh if there is one (else NULL).
    `ended`: say how the run came to its end, which the lines before have not said, or of another run. `written`: the
    names of the files. Collective. */

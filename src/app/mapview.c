@@ -1,6 +1,7 @@
-/* The table that a run of a map command ends with. */
+/* What a run of a map command tells at its end: a table, and the Hessian's eigenvalues. */
 #include "maprun.h"
 #include "mesh/soup_private.h"
+#include <string.h>
 
 /* What it took. */
 static PetscErrorCode PrintWork(MPI_Comm comm, const EqmMapCost *cost)
@@ -81,5 +82,27 @@ PetscErrorCode EqmMapPrintResult(PetscBool ended, const char *written, EqmMap ma
   PetscCall(PrintWork(comm, cost));
   PetscCall(PetscPrintf(comm, "  memory        %.0f MB in all\n  written       %s\n", 1e-6 * (double)cost->memory_total,
                         written));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMapTakeEigenvalues(PetscInt wanted, const char *hessian, EqmLedger ledger, EqmSolver solver,
+                                     EqmMap map)
+{
+  PetscReal *values;
+  PetscInt found;
+
+  PetscFunctionBegin;
+  if (wanted == 0) PetscFunctionReturn(0);
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_MEASURE));
+  PetscCall(PetscMalloc1(wanted, &values));
+  PetscCall(strcmp(hessian, "energy") ? EqmSolverStretchHessianEigenvalues(solver, wanted, values, &found)
+                                      : EqmSolverHessianEigenvalues(solver, wanted, values, &found));
+  PetscCall(EqmMapAddText(map, "hessian", hessian));
+  PetscCall(EqmMapSetHessianEigenvalues(map, found, values));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_MEASURE));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\nsmallest eigenvalues of the Hessian:"));
+  for (PetscInt k = 0; k < found; k++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, " %.4e", (double)values[k]));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, found < wanted ? " (the others not found)\n" : "\n"));
+  PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }

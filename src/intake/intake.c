@@ -1,5 +1,5 @@
 /* The mesh that a run is given: read, prepared and repaired if set, refused if it cannot be mapped. */
-#include "intake/intake.h"
+#include "intake/intake_private.h"
 #include "mesh/mesh_private.h"
 #include "mesh/handles.h"
 #include "mesh/target.h"
@@ -50,8 +50,7 @@ PetscErrorCode EqmPrintPreparation(MPI_Comm comm, const char *part, const EqmPre
   PetscFunctionReturn(0);
 }
 
-/* Prepare a copy of the input; if nothing changes, the input itself is mapped. */
-static PetscErrorCode Prepare(const EqmPrepareOptions *options, EqmIntake *intake)
+PetscErrorCode EqmIntakePrepare(const EqmPrepareOptions *options, EqmIntake *intake)
 {
   PetscFunctionBegin;
   PetscCall(EqmSoupPrepare(intake->given, options, &intake->preparation));
@@ -75,9 +74,8 @@ static PetscErrorCode Unprepare(EqmIntake *intake)
   PetscFunctionReturn(0);
 }
 
-/* Diagnose the mesh: topology, target (the named one or that of the topology), defects. */
-static PetscErrorCode Diagnose(const char *wanted, PetscBool with_places, EqmIntake *intake, PetscBool *fatal,
-                               char *text, size_t length)
+PetscErrorCode EqmIntakeDiagnose(const char *wanted, PetscBool with_places, EqmIntake *intake, PetscBool *fatal,
+                                 char *text, size_t length)
 {
   const EqmTarget *natural;
   EqmDiagnosis diagnosis;
@@ -111,8 +109,9 @@ static PetscErrorCode FindCure(EqmIntake *intake, const char *wanted, PetscBool 
     options.repair = (PetscBool)(cure != 1);
     PetscCall(PetscStrncpy(options.steps, cure ? "auto" : "none", sizeof(options.steps)));
     PetscCall(Unprepare(intake));
-    PetscCall(Prepare(&options, intake));
-    if (intake->mapped != intake->given) PetscCall(Diagnose(wanted, PETSC_FALSE, intake, &fatal, text, sizeof(text)));
+    PetscCall(EqmIntakePrepare(&options, intake));
+    if (intake->mapped != intake->given)
+      PetscCall(EqmIntakeDiagnose(wanted, PETSC_FALSE, intake, &fatal, text, sizeof(text)));
     PetscCall(PetscStrncpy(advice, cures[cure], length));
   }
   if (fatal) advice[0] = '\0';
@@ -138,8 +137,7 @@ static PetscErrorCode Refuse(EqmIntake *intake, const EqmIntakeOptions *options,
           hope);
 }
 
-/* The mesh as the file has it, with its density, and then with noise; `plain` is the one without. */
-static PetscErrorCode Read(MPI_Comm comm, const EqmIntakeOptions *options, EqmIntake *intake, EqmSoup *plain)
+PetscErrorCode EqmIntakeReadSoup(MPI_Comm comm, const EqmIntakeOptions *options, EqmIntake *intake, EqmSoup *plain)
 {
   PetscFunctionBegin;
   if (options->is_copy)
@@ -184,14 +182,14 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   PetscFunctionBegin;
   PetscCall(PetscMemzero(intake, sizeof(*intake)));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_READ));
-  PetscCall(Read(comm, options, intake, &plain));
+  PetscCall(EqmIntakeReadSoup(comm, options, intake, &plain));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DIAGNOSE));
   intake->mapped = intake->given;
   if (!options->quiet && plain->note[0]) PetscCall(PetscPrintf(comm, "note: %s: %s\n", plain->file, plain->note));
   prepare.repair = options->repair;
   prepare.target = options->target;
-  PetscCall(Prepare(&prepare, intake));
+  PetscCall(EqmIntakePrepare(&prepare, intake));
   if (!options->quiet) PetscCall(EqmPrintPreparation(comm, options->part, &intake->preparation));
   if (options->repair && !options->quiet) PetscCall(EqmPrintRepair(comm, options->part, &intake->repair));
   if (intake->repair.cells_split && !options->quiet) {
@@ -200,75 +198,12 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
                           " cells that were split; they themselves are measured afterwards\n",
                           OF_PART(options->part), intake->repair.cells_split));
   }
-  PetscCall(Diagnose(options->target, PETSC_TRUE, intake, &fatal, text, sizeof(text)));
+  PetscCall(EqmIntakeDiagnose(options->target, PETSC_TRUE, intake, &fatal, text, sizeof(text)));
   if (fatal) PetscCall(Refuse(intake, options, text));
   if (!options->quiet) PetscCall(PrintLinesWith(comm, options->part, "warning: ", text));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));
   if (options->checkpoint) PetscCall(Keep(plain, options, ledger));
   if (plain != intake->given) PetscCall(EqmSoupDestroy(&plain));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmIntakeReadGiven(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger, EqmIntake *intake)
-{
-  EqmSoup plain;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMemzero(intake, sizeof(*intake)));
-  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_READ));
-  PetscCall(Read(comm, options, intake, &plain));
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
-  intake->mapped = intake->given;
-  if (!options->quiet && plain->note[0]) PetscCall(PetscPrintf(comm, "note: %s: %s\n", plain->file, plain->note));
-  if (plain != intake->given) PetscCall(EqmSoupDestroy(&plain));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmIntakePiece(const EqmIntakeOptions *options, const EqmIntake *intake, EqmIntake *piece,
-                              PetscInt *num_pieces, PetscBool *can, char *reason, size_t length)
-{
-  EqmPrepareOptions prepare = options->prepare;
-  PetscBool fatal;
-  char *end;
-
-  PetscFunctionBegin;
-  *piece = (EqmIntake){.given = intake->given, .mapped = intake->given};
-  prepare.repair = options->repair;
-  prepare.target = options->target;
-  prepare.each_piece = PETSC_TRUE;
-  PetscCall(Prepare(&prepare, piece));
-  *num_pieces = 1;
-  for (PetscInt s = 0; s < piece->preparation.num_steps; s++) {
-    if (!strcmp(piece->preparation.step[s].step, "largest"))
-      *num_pieces = (PetscInt)piece->preparation.step[s].count + 1;
-  }
-  PetscCall(Diagnose(options->target, PETSC_FALSE, piece, &fatal, reason, length));
-  *can = (PetscBool)!fatal;
-  end = strchr(reason, '\n');
-  if (end) *end = '\0';
-  if (!strncmp(reason, "error: ", 7)) memmove(reason, reason + 7, strlen(reason + 7) + 1);
-  PetscFunctionReturn(0);
-}
-
-/* EqmIntakeWithoutSplits - the same mesh, prepared in the same way but for the cells that a repair has split.
-
-   Collective. whole - shares `given` with `intake`; free its preparation with EqmPreparationReset. can - it can be
-   mapped as it is: splits may serve the method alone. */
-PetscErrorCode EqmIntakeWithoutSplits(const EqmIntakeOptions *options, const EqmIntake *intake, EqmIntake *whole,
-                                      PetscBool *can)
-{
-  char text[4 * EQM_MESSAGE_MAX];
-  EqmPrepareOptions prepare = options->prepare;
-  PetscBool fatal;
-
-  PetscFunctionBegin;
-  *whole = (EqmIntake){.given = intake->given, .mapped = intake->given};
-  prepare.repair = options->repair;
-  prepare.target = options->target;
-  prepare.keeps_cells = PETSC_TRUE;
-  PetscCall(Prepare(&prepare, whole));
-  PetscCall(Diagnose(options->target, PETSC_FALSE, whole, &fatal, text, sizeof(text)));
-  *can = (PetscBool)!fatal;
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,16 @@
+/* Steps of reading a mesh that is to be mapped; private to this folder. */
+#ifndef EQM_INTAKE_PRIVATE_H
+#define EQM_INTAKE_PRIVATE_H
+
+#include "intake/intake.h"
+
+/* The mesh as the file has it, with its density, and then with noise; `plain` is the one without. Collective. */
+PETSC_INTERN PetscErrorCode EqmIntakeReadSoup(MPI_Comm comm, const EqmIntakeOptions *options, EqmIntake *intake,
+                                              EqmSoup *plain);
+/* Prepare a copy of the input; if nothing changes, the input itself is mapped. Collective. */
+PETSC_INTERN PetscErrorCode EqmIntakePrepare(const EqmPrepareOptions *options, EqmIntake *intake);
+/* Diagnose the mesh: topology, target (the named one or that of the topology), defects. Collective. */
+PETSC_INTERN PetscErrorCode EqmIntakeDiagnose(const char *wanted, PetscBool with_places, EqmIntake *intake,
+                                              PetscBool *fatal, char *text, size_t length);
+
+#endif
