@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <equimap/soup.h>
+#include "base/fatal.h"
 
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
@@ -18,6 +19,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
   char **arguments = none;
 
   if (EqmInitialize(&one, &arguments) || PetscPushErrorHandler(PetscReturnErrorHandler, NULL)) abort();
+  EqmForgetEnds(); /* the fuzzer ends the program itself */
   return 0;
 }
 
