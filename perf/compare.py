@@ -74,7 +74,8 @@ def rows_of_run(args, command, shape, size, ranks):
     mesh = make_mesh(args.program, args.folder, shape, size)
     stems = [os.path.join(args.folder, f"model-{command}-{size}-r{ranks}-i{iterations}") for iterations in ITERATIONS]
     summaries = [run_once(args.program, command, mesh, stem, ranks, 1,
-                          ["-log_view", f":{stem}.log.csv:ascii_csv", "-max_it", str(iterations), "-energy_rtol", "0"])
+                          ["-log_view", f":{stem}.log.csv:ascii_csv", "-max_it", str(iterations), "-energy_rtol", "0",
+                           *args.options])
                  for stem, iterations in zip(stems, ITERATIONS)]
     events = difference([stem + ".log.csv" for stem in stems])
     figures = {**solver_figures(summaries[1]), **halo_figures(events, ranks)}
@@ -86,7 +87,7 @@ def rows_of_run(args, command, shape, size, ranks):
         figures["factor_bytes"] = total(events, "EqmFactor", "Message Length") / 2.
         said["factor_bytes"] = (coupled * said["bytes_sent"]
                                 + (factors - coupled) * model.factor(vertices, ranks, dimension, 1)["bytes_sent"])
-    head = {"command": command, "vertices": vertices, "ranks": ranks}
+    head = {"command": command, "vertices": vertices, "ranks": ranks, "options": " ".join(args.options)}
     rows = [{**head, "quantity": name, "measured": value, "model": said.get(name, ""),
              "ratio": value / said[name] if said.get(name) else ""} for name, value in figures.items()]
     return rows + [{**head, "quantity": name, "measured": value, "model": "", "ratio": ""}
