@@ -87,8 +87,8 @@ def check_measure(mesh, result):
 
 def check_failures(mesh, ranks):
     """Exit codes as exceptions that carry the program's words, said once however many ranks there are."""
-    problem = refused(equimap.MeshError, "fill the holes", "disk", equimap.generate("annulus", 300), output="none.h5", ranks=ranks)
-    assert problem.message.count("fill the holes") == 1 and not os.path.exists("none.h5")
+    problem = refused(equimap.MeshError, "-prepare auto fills them", "disk", equimap.generate("annulus", 300), output="none.h5", ranks=ranks)
+    assert problem.message.count("-prepare auto fills them") == 1 and not os.path.exists("none.h5")
     problem = refused(equimap.NotConverged, "", "disk", mesh, max_it=1, accept=(0,), ranks=ranks, threads=1)
     assert problem.code == 4 and problem.result.map.shape == (len(mesh.vertices), 2)
 
