@@ -132,7 +132,11 @@ PetscErrorCode EqmReserveForBlas(void)
   PetscFunctionBegin;
   if (is_done) PetscFunctionReturn(0);
   space = mmap(NULL, length, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  PetscCheck(space != MAP_FAILED, PETSC_COMM_SELF, PETSC_ERR_MEM, "work space of the BLAS");
+  PetscCheck(
+      space != MAP_FAILED, PETSC_COMM_SELF, PETSC_ERR_MEM,
+      "out of memory: the BLAS asks for a work space of %d MB on every rank; raise the limit (ulimit -v), or use "
+      "fewer ranks on a node",
+      (int)(length >> 20));
   (void)munmap(space, length);
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &n, matrix, &n, &info));
   is_done = PETSC_TRUE;

@@ -84,8 +84,9 @@ static PetscBool IsFinite(const EqmStatistics *s)
   return (PetscBool)!PetscIsInfOrNanReal(s->mean + s->sd + s->min + s->max + s->p25 + s->p50 + s->p75 + s->p95);
 }
 
-/* A result whose figures are no numbers must not look like one, whatever spoilt them. Quasiconformal distortion alone
-   may be infinite: that of a flat image is. */
+/* A result whose figures are no numbers must not look like one, whatever spoilt them. Infinite may be
+   the mass of the mesh, with densities near the largest double, and quasiconformal distortion: that of a flat image is.
+ */
 static PetscErrorCode CheckFigures(MPI_Comm comm, PetscInt cell_size, const EqmDistortion *d)
 {
   const EqmWeightedRatio *const w = &d->weighted_ratio;
@@ -94,7 +95,8 @@ static PetscErrorCode CheckFigures(MPI_Comm comm, PetscInt cell_size, const EqmD
   PetscBool finite = (PetscBool)(IsFinite(&d->ratio) && IsFinite(&d->ratio_error));
 
   PetscFunctionBegin;
-  if (PetscIsInfOrNanReal(d->energy + d->image_measure + d->mesh_measure + weighted)) finite = PETSC_FALSE;
+  if (PetscIsInfOrNanReal(d->energy + d->image_measure + weighted) || PetscIsNanReal(d->mesh_measure))
+    finite = PETSC_FALSE;
   if (cell_size == 3 && (!IsFinite(&d->angle_error) || PetscIsNanReal(q->mean) || PetscIsNanReal(q->p50)))
     finite = PETSC_FALSE;
   PetscCheck(finite, comm, PETSC_ERR_FP, "the figures of the map are not finite");
