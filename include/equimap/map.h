@@ -113,6 +113,9 @@ PETSC_EXTERN PetscErrorCode EqmMapAddPrepared(EqmMap map, const char *step, Pets
    three coordinates per vertex; with one z everywhere it is a planar map. Ratios and distortion stay zero until
    EqmMapMeasure. Collective. Errors: EQM_ERR_IO, EQM_ERR_MESH (the vertex counts differ). */
 PETSC_EXTERN PetscErrorCode EqmMapRead(EqmSoup soup, const char *file, EqmMap *map);
+/* EqmMapRestoreUnit - the map's mesh was brought into range (EqmSoupBringIntoRange): its coordinates and measure in the
+   file's unit again. What was made of the mesh, such as an EqmMesh, keeps its own. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmMapRestoreUnit(EqmMap map, PetscInt exponent);
 /* EqmMapMeasure - compute distortion, ratios and folds of `map` from coordinates alone.
 
    Collective. mesh - the distributed mesh made of the map's soup; x - the images of its local vertices, ghosts

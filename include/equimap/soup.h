@@ -101,6 +101,14 @@ PETSC_EXTERN PetscErrorCode EqmSoupScale(EqmSoup soup, PetscReal factor);
    squares of areas or volumes are no numbers. Collective. Errors: EQM_ERR_MESH, with the command that scales the mesh.
  */
 PETSC_EXTERN PetscErrorCode EqmSoupCheckExtent(EqmSoup soup);
+/* EqmSoupBringIntoRange - divide the coordinates of such a mesh by a power of two, which changes no digit, so that it
+   extends over about one; those of others stay.
+
+   Collective. exponent - of that power, 0 where nothing was changed; EqmSoupShift with it brings the file's unit back.
+   The checksum remains that of the file. Errors: EQM_ERR_MESH (areas or volumes in the file's unit are no numbers). */
+PETSC_EXTERN PetscErrorCode EqmSoupBringIntoRange(EqmSoup soup, PetscInt *exponent);
+/* EqmSoupShift - multiply the coordinates by 2^exponent; the checksum stays. Not collective. */
+PETSC_EXTERN PetscErrorCode EqmSoupShift(EqmSoup soup, PetscInt exponent);
 
 /* EqmSoupAddNoise - move every vertex of a surface along its normal by a random length, for studies of stability (001
    section 6.5).

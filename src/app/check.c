@@ -218,6 +218,14 @@ static PetscErrorCode WriteSummary(const CheckReport *report, const char *file)
   PetscFunctionReturn(0);
 }
 
+/* Areas or volumes of the file, of a mesh that was brought into range. */
+static void TakeUnit(int exponent, EqmDiagnosis *d)
+{
+  d->measure = ldexp(d->measure, exponent);
+  d->smallest_cell = ldexp(d->smallest_cell, exponent);
+  d->largest_cell = ldexp(d->largest_cell, exponent);
+}
+
 static PetscErrorCode PrintUsage(void)
 {
   PetscFunctionBegin;
@@ -236,6 +244,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
   CheckOptions options;
   CheckReport report = {0};
   EqmSoup soup;
+  PetscInt unit;
 
   PetscFunctionBegin;
   PetscCall(ReadOptions(&options));
@@ -253,7 +262,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
   }
   report.file = line->argument[0];
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, report.file, &soup));
-  PetscCall(EqmSoupCheckExtent(soup));
+  PetscCall(EqmSoupBringIntoRange(soup, &unit));
   if (options.repair) {
     PetscInt *parent;
 
@@ -262,6 +271,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
     report.repaired = PETSC_TRUE;
   }
   PetscCall(EqmSoupDiagnose(soup, &report.diagnosis));
+  TakeUnit((int)(unit * (soup->cell_size - 1)), &report.diagnosis);
   PetscCall(EqmDiagnosisPlaceHandle(soup, &report.diagnosis));
   PetscCall(PrintCounts(&report));
   if (soup->note[0]) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  note              %s\n", soup->note));
@@ -269,6 +279,7 @@ PetscErrorCode EqmCommandCheck(const EqmCommandLine *line, EqmStatus *status)
   PetscCall(PrintVerdicts(&report));
   if (!options.repair) PetscCall(EqmCheckPreparation(soup, report.num_targets, report.takes, &report.prepared));
   if (options.summary[0]) PetscCall(WriteSummary(&report, options.summary));
+  PetscCall(EqmSoupShift(soup, unit));
   if (options.out[0]) PetscCall(EqmSoupWrite(soup, options.out));
   PetscCall(EqmSoupDestroy(&soup));
   cJSON_Delete(report.prepared);

@@ -156,6 +156,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   PetscCall(PetscSNPrintf(options->usage, sizeof(options->usage), "equimap %s %s", line->command, mesh));
   options->input.usage = options->usage;
   options->input.target = line->command;
+  options->input.any_size = (PetscBool)!options->pieces;
   PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->output));
   if (options->has_uv) PetscCall(CheckTexture(line->command, options->uv));
   if (options->has_uv) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->uv));
@@ -186,7 +187,6 @@ static PetscErrorCode Write(const MapOptions *options, EqmLedger ledger, EqmMap 
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_WRITE));
   if (status != EQM_STATUS_STOPPED) { /* there is the checkpoint */
     PetscCall(EqmMapSetImageScale(map, options->radius));
-    PetscCall(EqmMapAddPolygons(map));
     PetscCall(EqmMapWrite(map, options->output));
     PetscCall(EqmMapGetSoup(map, &soup));
     PetscCall(EqmPrintDropped(soup, options->output, PETSC_TRUE));
@@ -213,6 +213,9 @@ static PetscErrorCode Solve(const EqmCommandLine *line, const MapOptions *option
   PetscCall(EqmMapRunWithoutSplits(line->command, &options->input, input, &options->stop_file, ledger, &run, &whole));
   PetscCall(
       EqmMapTakeEigenvalues(options->hessian_eigenvalues, hessians[options->hessian], ledger, run.solver, run.map));
+  PetscCall(EqmMapAddPolygons(run.map));
+  PetscCall(EqmMapRestoreUnit(run.map, input->unit));
+  if (run.found != run.map) PetscCall(EqmMapRestoreUnit(run.found, input->unit));
   PetscCall(Write(options, ledger, run.map, run.map));
   PetscCall(EqmMapGetStatus(run.map, status, NULL));
   PetscCall(EqmMapPrintResult((PetscBool)(options->input.quiet || whole.mapped),
@@ -238,6 +241,7 @@ static PetscErrorCode SolvePieces(const EqmCommandLine *line, const MapOptions *
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-uv with -pieces each is for maps to the plane");
   texture = pieces.map;
   if (options->has_uv) PetscCall(EqmPiecesCharts(&pieces, &texture));
+  PetscCall(EqmMapAddPolygons(pieces.map));
   PetscCall(Write(options, ledger, pieces.map, texture));
   PetscCall(EqmMapPrintResult(PETSC_TRUE, options->output, pieces.map, NULL));
   PetscCall(EqmMapGetStatus(pieces.map, status, NULL));

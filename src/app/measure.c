@@ -221,16 +221,18 @@ static PetscErrorCode MeasureMap(const char *file, Measured *m)
 static PetscErrorCode Measure(const EqmCommandLine *line, const MeasureOptions *options, EqmStatus *status)
 {
   Measured m = {.map = NULL};
+  PetscInt unit;
   const EqmDistortion *distortion;
 
   PetscFunctionBegin;
   PetscCall(EqmLedgerCreate(PETSC_COMM_WORLD, &m.ledger));
   PetscCall(EqmSoupRead(PETSC_COMM_WORLD, line->argument[0], &m.soup));
   if (options->density[0]) PetscCall(EqmSoupReadDensity(m.soup, options->density));
-  PetscCall(EqmSoupCheckExtent(m.soup));
+  PetscCall(EqmSoupBringIntoRange(m.soup, &unit));
   PetscCall(CheckMeasurable(m.soup));
   PetscCall(ReadMap(options, line->argument[1], &m));
   PetscCall(MeasureMap(line->argument[1], &m));
+  PetscCall(EqmMapRestoreUnit(m.map, unit));
   PetscCall(EqmMapGetDistortion(m.map, &distortion));
   *status = distortion->folds ? EQM_STATUS_FOLDS : EQM_STATUS_CONVERGED;
   PetscCall(EqmMapSetStatus(m.map, *status, ""));

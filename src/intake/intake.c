@@ -5,6 +5,7 @@
 #include "mesh/target.h"
 #include "store/keptmesh.h"
 #include "store/map_private.h"
+#include <math.h>
 #include <string.h>
 
 /* Prefix of a report: the name of the mesh, if there are two. */
@@ -144,24 +145,29 @@ PetscErrorCode EqmIntakeReadSoup(MPI_Comm comm, const EqmIntakeOptions *options,
     PetscCall(EqmKeptMeshRead(comm, options->mesh, &intake->given));
   else
     PetscCall(EqmSoupRead(comm, options->mesh, &intake->given));
-  PetscCall(EqmSoupCheckExtent(intake->given));
+  if (options->any_size)
+    PetscCall(EqmSoupBringIntoRange(intake->given, &intake->unit));
+  else
+    PetscCall(EqmSoupCheckExtent(intake->given));
   if (options->density) PetscCall(EqmSoupReadDensity(intake->given, options->density));
   *plain = intake->given;
   if (options->noise == 0.) PetscFunctionReturn(0);
   PetscCall(EqmSoupCopy(intake->given, plain));
-  PetscCall(EqmSoupAddNoise(intake->given, options->noise, options->seed));
+  PetscCall(EqmSoupAddNoise(intake->given, ldexp(options->noise, (int)-intake->unit), options->seed));
   PetscFunctionReturn(0);
 }
 
-/* The copy beside the checkpoint. */
-static PetscErrorCode Keep(EqmSoup soup, const EqmIntakeOptions *options, EqmLedger ledger)
+/* The copy beside the checkpoint, in the file's unit. */
+static PetscErrorCode Keep(EqmSoup soup, PetscInt unit, const EqmIntakeOptions *options, EqmLedger ledger)
 {
   char name[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_CHECKPOINT));
   PetscCall(EqmKeptMeshName(options->checkpoint, options->part, name, sizeof(name)));
+  PetscCall(EqmSoupShift(soup, unit));
   PetscCall(EqmKeptMeshWrite(soup, NULL, name, options->resumed));
+  PetscCall(EqmSoupShift(soup, -unit));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_CHECKPOINT));
   PetscFunctionReturn(0);
 }
@@ -202,7 +208,7 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
   if (fatal) PetscCall(Refuse(intake, options, text));
   if (!options->quiet) PetscCall(PrintLinesWith(comm, options->part, "warning: ", text));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));
-  if (options->checkpoint) PetscCall(Keep(plain, options, ledger));
+  if (options->checkpoint) PetscCall(Keep(plain, intake->unit, options, ledger));
   if (plain != intake->given) PetscCall(EqmSoupDestroy(&plain));
   PetscFunctionReturn(0);
 }

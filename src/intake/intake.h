@@ -22,6 +22,7 @@ typedef struct {
   PetscInt seed;                 /* of the noise */
   EqmPrepareOptions prepare;     /* preparation of the mesh; with empty steps the command has none */
   PetscBool repair;              /* repair what can be repaired without a choice */
+  PetscBool any_size;            /* bring meshes of any size into range: the command restores the unit of the file */
   PetscBool quiet;               /* print neither what was done nor warnings */
 } EqmIntakeOptions;
 
@@ -33,6 +34,7 @@ typedef struct {
                        they are the same */
   EqmRepair repair; /* counts of the repair */
   EqmPreparation preparation; /* steps of the preparation, and the map back */
+  PetscInt unit;              /* both are divided by 2^unit: EqmMapRestoreUnit before maps of them are written */
   EqmTopology topology;       /* of `mapped` */
   const char *target;         /* what it can be mapped to */
 } EqmIntake;

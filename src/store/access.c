@@ -1,5 +1,6 @@
 /* Getters and setters of a map. */
 #include "store/map_private.h"
+#include <math.h>
 #include "mesh/soup_private.h"
 #include <omp.h>
 
@@ -149,5 +150,13 @@ PetscErrorCode EqmMapSetHessianEigenvalues(EqmMap map, PetscInt num, const Petsc
   PetscCall(PetscMalloc1(num, &map->hessian_eigenvalues));
   PetscCall(PetscArraycpy(map->hessian_eigenvalues, values, num));
   map->num_hessian_eigenvalues = num;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmMapRestoreUnit(EqmMap map, PetscInt exponent)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSoupShift(map->soup, exponent));
+  map->distortion.mesh_measure = ldexp(map->distortion.mesh_measure, (int)(exponent * (map->soup->cell_size - 1)));
   PetscFunctionReturn(0);
 }
