@@ -73,7 +73,7 @@ PetscErrorCode EqmProblemGetVertexMass(EqmProblem problem, const PetscReal **mas
 {
   PetscFunctionBegin;
   if (!problem->vertex_mass) {
-    PetscCall(PetscMalloc1(problem->mesh->num_owned, &problem->vertex_mass));
+    PetscCall(PetscMalloc1(problem->mesh->num_owned + 1, &problem->vertex_mass)); /* of a rank without vertices, too */
     PetscCall(EqmMeshVertexWeights(problem->mesh, problem->vertex_mass));
   }
   *mass = problem->vertex_mass;
