@@ -48,7 +48,8 @@ static PetscErrorCode SphericalBall(EqmMesh mesh, const EqmDomainOptions *option
 static PetscErrorCode Cube(EqmMesh mesh, const EqmDomainOptions *options, EqmDomain *domain)
 {
   PetscFunctionBegin;
-  PetscCheck(options && options->cube_places, mesh->comm, PETSC_ERR_ARG_NULL, "the cube wants its boundary's places");
+  PetscCheck(options && (options->cube_places || mesh->num_local == 0), mesh->comm, PETSC_ERR_ARG_NULL,
+             "the cube wants its boundary's places");
   PetscCall(EqmDomainCreateCube(mesh, options->cube_places, domain));
   PetscFunctionReturn(0);
 }

@@ -25,7 +25,7 @@ PetscErrorCode EqmSolverHeldAngles(EqmSolver solver, PetscReal **angles)
   PetscFunctionBegin;
   *angles = NULL;
   if (!solver->settings.hold_boundary || !solver->first_map) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(mesh->num_local, &angle));
+  PetscCall(PetscCalloc1(mesh->num_local + 1, &angle)); /* not NULL on ranks without vertices */
   for (PetscInt v = 0; v < mesh->num_owned; v++)
     angle[v] = PetscAtan2Real(solver->first_map[2 * v + 1], solver->first_map[2 * v]);
   PetscCall(EqmMeshUpdateGhosts(mesh, 1, angle));
