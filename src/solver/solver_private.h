@@ -62,10 +62,19 @@ struct _p_EqmSolver {
   PetscInt rows_shown;  /* and num_history at that time */
 };
 
-/* ---- options.c */
+/* ---- options.c, resolve.c */
 PETSC_INTERN PetscErrorCode EqmSolverSettingsDefault(EqmSolverSettings *settings);
 /* Look up method and start, and set unset values to the formulation's defaults. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverResolveSettings(EqmSolver solver);
+/* Values that no method takes. Errors: EQM_ERR_USAGE. Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverCheckSettings(EqmSolver solver);
+/* The objective and the method that the settings name; its options are read unless PetscOptionsObject is NULL.
+ * Collective. */
+PETSC_INTERN PetscErrorCode EqmSolverFindMethod(EqmSolver solver, PetscOptionItems *PetscOptionsObject);
+/* Create a method with the formulation's settings, then read its options unless PetscOptionsObject is NULL. Collective.
+ */
+PETSC_INTERN PetscErrorCode EqmSolverCreateMethod(EqmSolver solver, const EqmMethodDefaults *defaults,
+                                                  PetscOptionItems *PetscOptionsObject, EqmMethod *method);
 /* Read every option that the target could have. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolverListOptions(EqmSolver solver);
 /* ---- first_map.c: the first map: one that was given, or a start's. Collective. */

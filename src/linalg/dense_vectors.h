@@ -1,0 +1,31 @@
+/* Vectors of rows for the dense kernels: four columns at a time, rows in vectors of eight. A row's arithmetic does not
+   depend on where in a vector it stands. */
+#ifndef EQM_DENSE_VECTORS_H
+#define EQM_DENSE_VECTORS_H
+
+#include "linalg/dense.h"
+
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__GLIBC__) &&                           \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define EQM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define EQM_CLONES
+#endif
+#define EQM_INLINE static inline __attribute__((always_inline))
+
+typedef double Vector8 __attribute__((vector_size(64), aligned(8), may_alias));
+typedef double Vector4 __attribute__((vector_size(32), aligned(8), may_alias));
+typedef double Vector2 __attribute__((vector_size(16), aligned(8), may_alias));
+
+enum { GROUP = 4 };
+
+/* Call STEP(type, width) for as many rows as there are, in vectors that become shorter at the end. */
+#define FOR_ROWS(row, end, STEP)                                                                                       \
+  do {                                                                                                                 \
+    for (; (row) + 8 <= (end); (row) += 8) STEP(Vector8);                                                              \
+    for (; (row) + 4 <= (end); (row) += 4) STEP(Vector4);                                                              \
+    for (; (row) + 2 <= (end); (row) += 2) STEP(Vector2);                                                              \
+    for (; (row) < (end); (row)++) STEP(double);                                                                       \
+  } while (0)
+
+#endif
