@@ -85,8 +85,8 @@ PetscErrorCode EqmGapsProject(EqmGaps gaps, Vec direction)
   PetscFunctionReturn(0);
 }
 
-/* Of the changes of gaps those that would close one become what closes it nearly; all gaps give to that in proportion.
-   Then angles again, with the mean of those before. */
+/* Of the changes of gaps those that would close one become what closes it nearly; all gaps that are not at their bounds
+   give to that in proportion. Then angles again, with the mean of those before. */
 static void Clip(EqmGaps gaps)
 {
   const PetscInt n = gaps->loop->count;
@@ -96,13 +96,13 @@ static void Clip(EqmGaps gaps)
   for (PetscInt k = 0; k < n; k++) {
     change[k] = PetscMax(angle[(k + 1) % n] - angle[k], -margin * PetscMax(0., gaps->gap[k] - gaps->least[k]));
     excess += change[k];
-    total += gaps->gap[k];
+    total += IsAtBound(gaps, k) ? 0. : gaps->gap[k];
     mean += angle[k] / (PetscReal)n;
   }
   for (PetscInt k = 0; k < n; k++) {
     angle[k] = next;
     new_mean += next / (PetscReal)n;
-    next += change[k] - excess * gaps->gap[k] / total;
+    next += change[k] - (IsAtBound(gaps, k) ? 0. : excess * gaps->gap[k] / total);
   }
   for (PetscInt k = 0; k < n; k++) angle[k] += mean - new_mean;
 }

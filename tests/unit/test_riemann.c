@@ -1,6 +1,7 @@
 /* The Riemann map: gradient by the boundary's angles, the loop's metric, maps that are known. */
 #include "support/testing.h"
 #include "mesh/mesh_private.h"
+#include "method/loopgaps.h"
 #include "method/loopmetric.h"
 #include "method/riemann.h"
 #include "store/map_private.h"
@@ -126,6 +127,69 @@ static PetscErrorCode TestLoopMetric(void)
   PetscFunctionReturn(0);
 }
 
+/* Vertices 0 to SQUEEZED of the loop at gaps close to their bounds: a projected direction opens or keeps these, keeps
+   their mean, and is that of before elsewhere; a clipped one may be followed nearly to its end. */
+static PetscErrorCode TestGaps(void)
+{
+  enum { SQUEEZED = 10 };
+  TestMesh test;
+  EqmDomain domain;
+  EqmLoop loop;
+  EqmGaps gaps;
+  Vec direction;
+  PetscScalar *d;
+  PetscInt num = 0, *vertex, *place;
+  PetscReal *x, *arc, *whole, *before, t, sum = 0., rest = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "cap", 1500, 0, &test));
+  PetscCall(EqmDomainCreateDisk(test.mesh, &domain));
+  const PetscInt n = test.mesh->num_local, m = test.mesh->num_boundary_vertices;
+  const PetscReal gap = 2. * PETSC_PI / m;
+  PetscCall(PetscMalloc6(n, &vertex, n, &place, 2 * n, &x, n, &arc, m, &whole, m, &before));
+  PetscCall(EqmMeshBoundaryLoop(test.mesh, place, arc));
+  for (PetscInt v = 0; v < n; v++) {
+    if (v < test.mesh->num_owned && test.mesh->on_boundary[v]) vertex[num++] = v;
+    x[2 * v] = PetscCosReal(gap * place[v]);
+    x[2 * v + 1] = PetscSinReal(gap * place[v]);
+  }
+  PetscCall(EqmLoopCreate(test.mesh, num, vertex, &loop));
+  PetscCall(EqmGapsCreate(loop, x, 1e-9, &gaps));
+  for (PetscInt v = 0; v < n; v++) {
+    const PetscReal angle = gap * (place[v] > SQUEEZED ? (PetscReal)place[v] : .015 * place[v]);
+    x[2 * v] = PetscCosReal(angle);
+    x[2 * v + 1] = PetscSinReal(angle);
+  }
+  PetscCall(EqmGapsSet(gaps, x));
+  PetscCall(VecCreateMPI(PETSC_COMM_WORLD, num, m, &direction));
+  PetscCall(VecGetArray(direction, &d));
+  for (PetscInt b = 0; b < num; b++) d[b] = .3 * gap * TestRandom(5, place[vertex[b]], 0);
+  PetscCall(EqmLoopGather(loop, d, before));
+  PetscCall(VecRestoreArray(direction, &d));
+  PetscCall(EqmGapsProject(gaps, direction));
+  PetscCall(VecGetArray(direction, &d));
+  PetscCall(EqmLoopGather(loop, d, whole));
+  PetscCall(VecRestoreArray(direction, &d));
+  for (PetscInt k = 0; k < loop->count; k++) {
+    if (k < SQUEEZED) CHECK(whole[k + 1] >= whole[k], "gap %d closes", (int)k);
+    if (k <= SQUEEZED)
+      sum += whole[k] - before[k];
+    else
+      rest = PetscMax(rest, PetscAbsReal(whole[k] - before[k]));
+  }
+  CHECK(PetscAbsReal(sum) < 1e-15 && rest == 0., "mean off by %g, others by %g", (double)sum, (double)rest);
+  PetscCall(EqmGapsClip(gaps, direction));
+  PetscCall(EqmGapsLongestStep(gaps, direction, &t));
+  CHECK(t > .05, "a clipped direction may be followed to %g only", (double)t);
+  PetscCall(VecDestroy(&direction));
+  PetscCall(EqmGapsDestroy(&gaps));
+  PetscCall(EqmLoopDestroy(&loop));
+  PetscCall(PetscFree6(vertex, place, x, arc, whole, before));
+  PetscCall(EqmDomainDestroy(&domain));
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
 /* How far the map of a cap is from the stereographic projection, or that of a flat one from itself. */
 static PetscErrorCode CapError(PetscInt n, PetscBool flat, PetscReal *error, EqmDistortion *distortion)
 {
@@ -186,6 +250,7 @@ int main(int argc, char **argv)
   PetscCall(TestGradient());
   PetscCall(TestCentre());
   PetscCall(TestLoopMetric());
+  PetscCall(TestGaps());
   PetscCall(TestKnownMaps());
   PetscCall(EqmFinalize());
   return 0;
