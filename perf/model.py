@@ -18,15 +18,15 @@ REAL = 8                  # bytes
 INT_MAX = 2 ** 31 - 1     # what MPI counts with; PETSc, too, unless built with 64-bit indices
 INDICES = "indices of 32 bits: build with 64"
 CELLS_PER_VERTEX = {2: 2., 3: 5.5}
-# What the machine of the prediction is taken to do; the program's own figures are in docs/performance.md.
-FLOPS = 1e10              # a second, of one core in dense kernels
-STREAM = 7e9              # bytes a second of a factor, of one core in a solve
-NETWORK = 5e9             # bytes a second, of one link
-LATENCY = 2e-6            # seconds of a message; a reduction takes log2 of the ranks of them
-MEMORY = 4e9              # bytes that a rank may have
-# Of one iteration of the default method, from model.csv; bytes per vertex without the factor.
-WORK = {2: {"updates": 40, "reductions": 650, "solves": 24, "bytes_per_vertex": 1200.},
-        3: {"updates": 2, "reductions": 21, "solves": 1, "bytes_per_vertex": 3000.}}
+# Of one rank of a machine: name of the option, value, unit.
+MACHINE = {"flops": (1e10, "operations a second in a factorisation"), "stream": (7e9, "bytes of a factor a second in a solve"),
+           "network": (5e9, "bytes a second of a link"), "latency": (2e-6, "seconds of a message; of a reduction times log2 of the ranks"),
+           "memory": (4e9, "bytes of memory")}
+DEFAULTS = {name: value for name, (value, _) in MACHINE.items()}
+# Of one iteration of the default method, from model.csv; bytes per vertex beside the factor, of a run of a million vertices
+# and of a solid of a hundred thousand, the latter with the multigrid's matrices (docs/performance.md).
+WORK = {2: {"updates": 40, "reductions": 650, "solves": 24, "bytes_per_vertex": 1300.},
+        3: {"updates": 2, "reductions": 21, "solves": 1, "bytes_per_vertex": 8200.}}
 
 
 def ghosts(vertices, ranks, dimension):
@@ -49,8 +49,9 @@ def factor(vertices, ranks, dimension, dofs):
             "entries_on_path": whole.nonzeros / ranks + tree.path_entries, "largest_message": tree.largest_message, "own_entries": tree.own_panels}
 
 
-def predict(cells, ranks, dimension, work):
+def predict(cells, ranks, dimension, work, machine=None):
     """Rows (what, value, limit or None, what breaks there) for a mesh of so many cells."""
+    machine = machine or DEFAULTS
     dofs = dimension  # of the coupled matrix
     vertices = cells / CELLS_PER_VERTEX[dimension]
     cost = factor(vertices, ranks, dimension, dofs)
@@ -61,25 +62,25 @@ def predict(cells, ranks, dimension, work):
         ("nonzeros of the factor, all ranks", cost["nonzeros"], None, ""),
         ("ghosts of a rank, share of its own", ghosts(vertices, ranks, dimension) / vertices, .5, "more ghosts than vertices"),
         ("halo, bytes of a rank and update", halo_bytes(vertices, ranks, dimension, dimension), None, ""),
-        ("mesh and vectors, bytes of a rank", work["bytes_per_vertex"] * vertices / ranks, MEMORY, "memory"),
-        ("factor and fronts, bytes of the leading rank", cost["bytes_of_leader"], MEMORY, "memory of the rank that leads the last front"),
+        ("mesh and vectors, bytes of a rank", work["bytes_per_vertex"] * vertices / ranks, machine["memory"], "memory"),
+        ("factor and fronts, bytes of the leading rank", cost["bytes_of_leader"], machine["memory"], "memory of the rank that leads the last front"),
         ("largest front, unknowns", cost["largest_front"], None, ""),
         ("largest message, entries", cost["largest_message"], INT_MAX, "counts of a message"),
-        ("halo, seconds of an iteration", work["updates"] * (halo_bytes(vertices, ranks, dimension, dimension) / NETWORK
-                                                            + 2 * dimension * LATENCY), None, ""),
-        ("reductions, seconds of an iteration", work["reductions"] * LATENCY * math.log2(max(ranks, 2)), None, ""),
-        ("factorisation, seconds", cost["operations_on_path"] / FLOPS, None, ""),
-        ("the same, were the last fronts shared", cost["operations"] / ranks / FLOPS, None, ""),
-        ("solves, seconds of an iteration", work["solves"] * 2. * REAL * cost["entries_on_path"] / STREAM, None, ""),
-        ("the same, were the last fronts shared", work["solves"] * 2. * REAL * cost["nonzeros"] / ranks / STREAM, None, ""),
+        ("halo, seconds of an iteration", work["updates"] * (halo_bytes(vertices, ranks, dimension, dimension) / machine["network"]
+                                                            + 2 * dimension * machine["latency"]), None, ""),
+        ("reductions, seconds of an iteration", work["reductions"] * machine["latency"] * math.log2(max(ranks, 2)), None, ""),
+        ("factorisation, seconds", cost["operations_on_path"] / machine["flops"], None, ""),
+        ("the same, were the last fronts shared", cost["operations"] / ranks / machine["flops"], None, ""),
+        ("solves, seconds of an iteration", work["solves"] * 2. * REAL * cost["entries_on_path"] / machine["stream"], None, ""),
+        ("the same, were the last fronts shared", work["solves"] * 2. * REAL * cost["nonzeros"] / ranks / machine["stream"], None, ""),
     ]
 
 
-def breaking_points(cells_per_rank, dimension):
+def breaking_points(cells_per_rank, dimension, machine=None):
     """(what breaks, the first power of two of ranks at which it does), the earliest first."""
     found = {}
     for ranks in (2 ** k for k in range(1, 21)):
-        for name, value, limit, meaning in predict(cells_per_rank * ranks, ranks, dimension, WORK[dimension]):
+        for name, value, limit, meaning in predict(cells_per_rank * ranks, ranks, dimension, WORK[dimension], machine):
             if limit is not None and value > limit and name not in found:
                 found[name] = (meaning, ranks)
     return sorted(((name, *where) for name, where in found.items()), key=lambda row: row[2])
@@ -91,14 +92,17 @@ def main():
     parser.add_argument("--ranks", type=lambda text: int(float(text)), default=1000)
     parser.add_argument("--cells-per-rank", type=float, help="look for the ranks at which limits are met")
     parser.add_argument("--solid", action="store_true", help="tetrahedra instead of triangles")
+    for name, (value, unit) in MACHINE.items():
+        parser.add_argument(f"--{name}", type=float, default=value, help=f"{unit} (default {value:g})")
     args = parser.parse_args()
+    machine = {name: getattr(args, name) for name in MACHINE}
     dimension = 3 if args.solid else 2
     if args.cells_per_rank:
-        for name, meaning, ranks in breaking_points(args.cells_per_rank, dimension):
+        for name, meaning, ranks in breaking_points(args.cells_per_rank, dimension, machine):
             print(f"{ranks:>8} ranks, {args.cells_per_rank * ranks:8.1e} cells: {name}: {meaning}")
         return
     print(f"{args.cells:.1e} {'tetrahedra' if args.solid else 'triangles'} on {args.ranks} ranks")
-    for name, value, limit, meaning in predict(args.cells, args.ranks, dimension, WORK[dimension]):
+    for name, value, limit, meaning in predict(args.cells, args.ranks, dimension, WORK[dimension], machine):
         print(f"  {name:<46} {value:10.3g}" + (f"  over {limit:.2g}: {meaning}" if limit is not None and value > limit else ""))
 
 
