@@ -1,8 +1,10 @@
-/* Which rank owns which vertex: METIS on the vertex graph where that fits one rank, ranges along a curve where not. */
+/* Which rank owns which vertex: METIS on the vertex graph where that fits one rank, PT-Scotch on all or
+   ranges along a curve where not. */
 #include "mesh/build.h"
 #include "mesh/soup_private.h"
 #include "mesh/diagnose.h"
 #include <petscmat.h>
+#include <stdlib.h>
 
 /* Larger graphs do not visit one rank unless the user wants it. */
 static const PetscInt most_on_root = 1000000;
@@ -44,7 +46,7 @@ static PetscErrorCode PartitionOnRoot(EqmSoup soup, const EqmGraph *graph, Petsc
     edge_count[p] = counts[p][1];
     num_edges += edge_count[p];
     if (num_edges > PETSC_MPI_INT_MAX) {
-      EqmFail(soup->comm, EQM_ERR_USAGE, "the mesh's graph is too large for METIS on one rank: take -partition curve");
+      EqmFail(soup->comm, EQM_ERR_USAGE, "the mesh's graph is too large for METIS on one rank: take -partition auto");
     }
     row_start[p + 1] = row_start[p] + row_count[p];
     edge_start[p + 1] = edge_start[p] + edge_count[p];
@@ -86,6 +88,8 @@ static PetscErrorCode PartitionOnAll(EqmSoup soup, EqmGraph *graph, const char *
   PetscCall(MatCreateMPIAdj(soup->comm, graph->num_rows, soup->num_vertices, graph->start, graph->neighbor, NULL,
                             &adjacency));
   graph->start = graph->neighbor = NULL;
+  /* threads of PT-Scotch's own would race for the cut: the same mesh would be cut otherwise the next time */
+  PetscCheck(!setenv("SCOTCH_PTHREAD_NUMBER", "1", 0), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a variable");
   PetscCall(MatPartitioningCreate(soup->comm, &partitioning));
   PetscCall(MatPartitioningSetAdjacency(partitioning, adjacency));
   PetscCall(MatPartitioningSetType(partitioning, type));
@@ -124,6 +128,13 @@ static const char *const partitions[NUM_PARTITIONS] = {
 #endif
 };
 
+/* For what is too large for one rank. */
+#if defined(EQM_HAVE_PTSCOTCH)
+static const PetscInt parallel = PARTITION_PTSCOTCH;
+#else
+static const PetscInt parallel = PARTITION_CURVE;
+#endif
+
 PetscErrorCode EqmMeshHelpOptions(PetscOptionItems *PetscOptionsObject)
 {
   PetscInt kind = PARTITION_AUTO;
@@ -133,8 +144,8 @@ PetscErrorCode EqmMeshHelpOptions(PetscOptionItems *PetscOptionsObject)
       "-partition",
       "which rank gets which vertices: metis cuts few edges and takes the mesh's graph to one rank for a moment, "
       "curve takes ranges along Hilbert's curve through space, slab the vertices as the file has them, ptscotch and "
-      "parmetis, where PETSc has them, cut the graph on all ranks, not always in the same way; auto: metis up to a "
-      "million vertices, curve beyond",
+      "parmetis, where PETSc has them, cut the graph on all ranks; auto: metis up to a million vertices, beyond it "
+      "ptscotch, or curve where that is not there",
       "EqmMeshCreate", partitions, NUM_PARTITIONS, partitions[kind], &kind, NULL));
   PetscFunctionReturn(0);
 }
@@ -150,7 +161,7 @@ PetscErrorCode EqmPartitionVertices(EqmSoup soup, EqmLedger ledger, PetscInt *ow
   PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
   PetscCallMPI(MPI_Comm_size(soup->comm, &size));
   PetscCall(PetscOptionsGetEList(NULL, NULL, "-partition", partitions, NUM_PARTITIONS, &kind, NULL));
-  if (kind == PARTITION_AUTO) kind = soup->num_vertices > most_on_root ? PARTITION_CURVE : PARTITION_METIS;
+  if (kind == PARTITION_AUTO) kind = soup->num_vertices > most_on_root ? parallel : PARTITION_METIS;
   if (size == 1 || kind == PARTITION_SLAB) {
     for (PetscInt i = 0; i < soup->vertex_end - soup->vertex_start; i++) owner_of_slab[i] = rank;
     PetscFunctionReturn(0);
