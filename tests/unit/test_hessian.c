@@ -88,7 +88,8 @@ static PetscErrorCode Test(const char *shape, const char *target, PetscInt max_i
   char options[64];
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(options, sizeof(options), "-energy_rtol 0 -max_it %d", (int)max_it));
+  /* quasi-Newton steps would magnify rounding, which depends on the ranks */
+  PetscCall(PetscSNPrintf(options, sizeof(options), "-energy_rtol 0 -lm_inner 0 -max_it %d", (int)max_it));
   for (int k = 0; k < 2; k++) {
     TestMesh test;
     EqmSolver solver;
@@ -195,9 +196,9 @@ int main(int argc, char **argv)
     PetscCall(TestStretchCell());
     PetscCall(TestStretch());
     PetscCall(Test("head", "sphere", 0, 0));
-    PetscCall(Test("head", "sphere", 20, 3)); /* rotations */
+    PetscCall(Test("head", "sphere", 60, 3)); /* rotations */
     PetscCall(Test("cap", "disk", 0, 0));
-    PetscCall(Test("cap", "disk", 20, 1));
+    PetscCall(Test("cap", "disk", 60, 1));
     PetscCall(Test("hills", "square", 0, 0));
   }
   PetscCall(EqmFinalize());
