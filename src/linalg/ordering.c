@@ -12,29 +12,13 @@ struct _p_EqmOrdering {
   EqmSeparation *separation; /* made at the first need */
 };
 
-/* Counts of every rank and their offsets, for gathers to rank 0. Collective. */
-static PetscErrorCode GatherLayout(EqmMesh mesh, PetscInt mine, PetscMPIInt **count, PetscMPIInt **start)
-{
-  PetscMPIInt num_mine;
-  PetscInt64 total = mine;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_INT64, MPI_SUM, mesh->comm));
-  PetscCall(EqmCheckFits(total, sizeof(PetscMPIInt), "MPI", "numbers gathered on one rank for its ordering"));
-  PetscCall(PetscMalloc2(mesh->size, count, mesh->size + 1, start));
-  PetscCall(PetscMPIIntCast(mine, &num_mine));
-  PetscCallMPI(MPI_Allgather(&num_mine, 1, MPI_INT, *count, 1, MPI_INT, mesh->comm));
-  (*start)[0] = 0;
-  for (PetscMPIInt p = 0; p < mesh->size; p++) (*start)[p + 1] = (*start)[p] + (*count)[p];
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode GatherInts(EqmMesh mesh, PetscInt n, const PetscInt *mine, PetscInt **all, PetscInt *num_all)
 {
   PetscMPIInt *count, *start;
 
   PetscFunctionBegin;
-  PetscCall(GatherLayout(mesh, n, &count, &start));
+  PetscCall(PetscMalloc2(mesh->size, &count, mesh->size + 1, &start));
+  PetscCall(EqmGatherCounts(mesh->comm, n, "numbers gathered on one rank for its ordering", count, start));
   *num_all = start[mesh->size];
   *all = NULL;
   if (mesh->rank == 0) PetscCall(PetscMalloc1(*num_all + 1, all));
