@@ -138,15 +138,9 @@ PetscErrorCode EqmPlaceMakeFrames(EqmDomain domain, EqmPlace *place)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmDomainProject(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient, Vec dofs)
-{
-  PetscFunctionBegin;
-  PetscCall(VecZeroEntries(dofs));
-  PetscCall(EqmDomainAddProjected(domain, place, ambient, dofs));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmDomainAddProjected(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient, Vec dofs)
+/* In the place of what `dofs` has, or added to it. */
+static PetscErrorCode Project(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient, PetscBool add,
+                              Vec dofs)
 {
   PetscScalar *g;
 
@@ -157,12 +151,27 @@ PetscErrorCode EqmDomainAddProjected(EqmDomain domain, const EqmPlace *place, co
     PetscReal frame[9];
     const PetscInt count = EqmDomainFrame(domain, place, v, frame);
     for (PetscInt k = 0; k < count; k++) {
+      PetscScalar *const to = &g[domain->dof_start[v] - domain->dof_first + k];
       PetscReal sum = 0.;
       for (PetscInt c = 0; c < domain->dim; c++) sum += frame[domain->dim * k + c] * ambient[domain->dim * v + c];
-      g[domain->dof_start[v] - domain->dof_first + k] += sum;
+      *to = add ? *to + sum : sum;
     }
   }
   PetscCall(VecRestoreArray(dofs, &g));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmDomainProject(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient, Vec dofs)
+{
+  PetscFunctionBegin;
+  PetscCall(Project(domain, place, ambient, PETSC_FALSE, dofs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmDomainAddProjected(EqmDomain domain, const EqmPlace *place, const PetscReal *ambient, Vec dofs)
+{
+  PetscFunctionBegin;
+  PetscCall(Project(domain, place, ambient, PETSC_TRUE, dofs));
   PetscFunctionReturn(0);
 }
 
