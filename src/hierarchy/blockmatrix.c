@@ -14,15 +14,22 @@ PetscErrorCode EqmBlockMatrixReset(EqmBlockMatrix *matrix)
   PetscFunctionReturn(0);
 }
 
+/* One row times x, the columns begin .. end - 1 of it. */
+static inline void MultiplyRow(const EqmBlockMatrix *a, PetscInt i, PetscInt begin, PetscInt end, const PetscReal *x,
+                               PetscReal sum[2])
+{
+  sum[0] = sum[1] = 0.;
+  for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++) {
+    const PetscInt j = a->column[q];
+    if (j >= begin && j < end) EqmBlockAddApplied(&a->entry[q], x + 2 * j, sum);
+  }
+}
+
 void EqmBlockMatrixMultiply(const EqmBlockMatrix *a, const PetscReal *x, PetscReal *y)
 {
 #pragma omp parallel for schedule(static) if (a->num_rows > LEAST_ROWS)
   for (PetscInt i = 0; i < a->num_rows; i++) {
-    PetscReal sum[2] = {0., 0.};
-    for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++)
-      EqmBlockAddApplied(&a->entry[q], x + 2 * a->column[q], sum);
-    y[2 * i] = sum[0];
-    y[2 * i + 1] = sum[1];
+    MultiplyRow(a, i, 0, a->num_rows, x, y + 2 * i);
   }
 }
 
@@ -30,9 +37,8 @@ void EqmBlockMatrixResidual(const EqmBlockMatrix *a, const PetscReal *b, const P
 {
 #pragma omp parallel for schedule(static) if (a->num_rows > LEAST_ROWS)
   for (PetscInt i = 0; i < a->num_rows; i++) {
-    PetscReal sum[2] = {0., 0.};
-    for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++)
-      EqmBlockAddApplied(&a->entry[q], x + 2 * a->column[q], sum);
+    PetscReal sum[2];
+    MultiplyRow(a, i, 0, a->num_rows, x, sum);
     r[2 * i] = b[2 * i] - sum[0];
     r[2 * i + 1] = b[2 * i + 1] - sum[1];
   }
@@ -61,12 +67,9 @@ PetscErrorCode EqmBlockMatrixInvertDiagonal(EqmBlockMatrix *a, PetscBool *succes
 static inline void SweepRow(const EqmBlockMatrix *a, PetscInt i, PetscInt begin, PetscInt end, const PetscReal *b,
                             PetscReal *x)
 {
-  PetscReal sum[2] = {0., 0.}, right[2], value[2] = {0., 0.};
+  PetscReal sum[2], right[2], value[2] = {0., 0.};
 
-  for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++) {
-    const PetscInt j = a->column[q];
-    if (j >= begin && j < end) EqmBlockAddApplied(&a->entry[q], x + 2 * j, sum);
-  }
+  MultiplyRow(a, i, begin, end, x, sum);
   right[0] = b[2 * i] - sum[0];
   right[1] = b[2 * i + 1] - sum[1];
   EqmBlockAddApplied(&a->inverse[i], right, value);

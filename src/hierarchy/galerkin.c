@@ -63,18 +63,25 @@ static void RowEntries(const EqmProlongation *p, const EqmBlockMatrix *fine, Pet
   }
 }
 
-/* How long the rows are, then where they begin. `bad`: a thread has no memory. */
-static PetscErrorCode CountRows(const EqmProlongation *p, const EqmBlockMatrix *fine, EqmBlockMatrix *coarse, int *bad)
+/* A thread's table for RowPattern: no column has a place. NULL, and `bad`, where there is no memory. */
+static PetscInt *MakePlaces(PetscInt num_coarse, int *bad)
 {
-  PetscFunctionBegin;
+  PetscInt *const place = malloc((size_t)num_coarse * sizeof(PetscInt));
+
+  if (!place) {
+#pragma omp atomic write
+    *bad = 1;
+  }
+  for (PetscInt j = 0; place && j < num_coarse; j++) place[j] = -1;
+  return place;
+}
+
+/* How long the rows are, then where they begin. `bad`: a thread has no memory. */
+static void CountRows(const EqmProlongation *p, const EqmBlockMatrix *fine, EqmBlockMatrix *coarse, int *bad)
+{
 #pragma omp parallel if (p->num_fine > LEAST_ROWS)
   {
-    PetscInt *const place = malloc((size_t)p->num_coarse * sizeof(PetscInt));
-    if (!place) {
-#pragma omp atomic write
-      *bad = 1;
-    }
-    for (PetscInt j = 0; place && j < p->num_coarse; j++) place[j] = -1;
+    PetscInt *const place = MakePlaces(p->num_coarse, bad);
     PetscInt base = 0;
 #pragma omp for schedule(static)
     for (PetscInt j = 0; j < p->num_coarse; j++) {
@@ -87,19 +94,13 @@ static PetscErrorCode CountRows(const EqmProlongation *p, const EqmBlockMatrix *
   }
   coarse->start[0] = 0;
   for (PetscInt j = 0; j < p->num_coarse && !*bad; j++) coarse->start[j + 1] += coarse->start[j];
-  PetscFunctionReturn(0);
 }
 
 static void FillRows(const EqmProlongation *p, const EqmBlockMatrix *fine, EqmBlockMatrix *coarse, int *bad)
 {
 #pragma omp parallel if (p->num_fine > LEAST_ROWS)
   {
-    PetscInt *const place = malloc((size_t)p->num_coarse * sizeof(PetscInt));
-    if (!place) {
-#pragma omp atomic write
-      *bad = 1;
-    }
-    for (PetscInt j = 0; place && j < p->num_coarse; j++) place[j] = -1;
+    PetscInt *const place = MakePlaces(p->num_coarse, bad);
 #pragma omp for schedule(static)
     for (PetscInt j = 0; j < p->num_coarse; j++) {
       const PetscInt begin = coarse->start[j];
@@ -121,7 +122,7 @@ PetscErrorCode EqmProlongationGalerkin(const EqmProlongation *p, const EqmBlockM
   *coarse = (EqmBlockMatrix){.num_rows = p->num_coarse};
   PetscCall(PetscMalloc1(p->num_coarse + 1, &coarse->start));
   PetscCall(PetscMalloc1(p->num_coarse, &coarse->diagonal));
-  PetscCall(CountRows(p, fine, coarse, &bad));
+  CountRows(p, fine, coarse, &bad);
   if (!bad) {
     PetscCall(PetscMalloc1(coarse->start[p->num_coarse], &coarse->column));
     PetscCall(PetscMalloc1(coarse->start[p->num_coarse], &coarse->entry));

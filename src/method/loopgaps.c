@@ -72,16 +72,24 @@ static void Pool(EqmGaps gaps)
   }
 }
 
-PetscErrorCode EqmGapsProject(EqmGaps gaps, Vec direction)
+/* Change a direction on rank 0, where it lies as `value`. */
+static PetscErrorCode Change(EqmGaps gaps, void (*change)(EqmGaps), Vec direction)
 {
   PetscScalar *values;
 
   PetscFunctionBegin;
   PetscCall(VecGetArray(direction, &values));
   PetscCall(EqmLoopGather(gaps->loop, values, gaps->value));
-  if (gaps->loop->count > 0) Pool(gaps);
+  if (gaps->loop->count > 0) change(gaps);
   PetscCall(EqmLoopScatter(gaps->loop, gaps->value, values));
   PetscCall(VecRestoreArray(direction, &values));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmGapsProject(EqmGaps gaps, Vec direction)
+{
+  PetscFunctionBegin;
+  PetscCall(Change(gaps, Pool, direction));
   PetscFunctionReturn(0);
 }
 
@@ -109,14 +117,8 @@ static void Clip(EqmGaps gaps)
 
 PetscErrorCode EqmGapsClip(EqmGaps gaps, Vec direction)
 {
-  PetscScalar *values;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArray(direction, &values));
-  PetscCall(EqmLoopGather(gaps->loop, values, gaps->value));
-  Clip(gaps);
-  PetscCall(EqmLoopScatter(gaps->loop, gaps->value, values));
-  PetscCall(VecRestoreArray(direction, &values));
+  PetscCall(Change(gaps, Clip, direction));
   PetscFunctionReturn(0);
 }
 

@@ -2,8 +2,7 @@
    collapsed cells back and are lenient with those that are too large; where ratios are off at the end by more than one
    in a hundred it goes on with the mixed residual, which is close to E on that side. Where that leaves folds, or a
    map that is far off, other starts are tried. Each attempt has, if the run has checkpoints, one of its own: FILE.2,
-   FILE.3,
-   ... The best map is the run's. */
+   FILE.3, ... The best map is the run's. */
 #include "solver/solver_private.h"
 #include "mesh/mesh_private.h"
 #include "base/quiet.h"
