@@ -13,6 +13,22 @@ PetscErrorCode EqmChangeAssemble(EqmChange *change, EqmVertexGroup *added, EqmCe
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmChangeRenumber(EqmChange *change, PetscInt num, const PetscInt *from, const PetscInt *to)
+{
+  const EqmSoup soup = change->soup;
+
+  PetscFunctionBegin;
+  if (num == 0) PetscFunctionReturn(0);
+  change->renumbers = PETSC_TRUE;
+  PetscCall(PetscMalloc1(soup->vertex_end - soup->vertex_start, &change->vertex));
+  for (PetscInt v = soup->vertex_start; v < soup->vertex_end; v++) {
+    PetscInt k;
+    PetscCall(PetscFindInt(v, num, from, &k));
+    change->vertex[v - soup->vertex_start] = k >= 0 ? to[k] : v;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmChangeWeighAdded(EqmChange *change, PetscReal weight)
 {
   const EqmSoup soup = change->soup;

@@ -107,13 +107,14 @@ static PetscErrorCode ListCells(EqmSoup soup, const EqmFlatPatch *patch, EqmCell
 }
 
 /* What became of the vertices: those that were joined have the number of the other one. */
-static PetscErrorCode Renumber(EqmSoup soup, EqmFlatPatch *patch, EqmChange *change)
+static PetscErrorCode Renumber(EqmFlatPatch *patch, EqmChange *change)
 {
   PetscInt num = patch->num_joined, *from = NULL, *to = NULL;
+  const MPI_Comm comm = change->soup->comm;
   PetscMPIInt rank;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank == 0) PetscCall(PetscMalloc2(num + 1, &from, num + 1, &to));
   for (PetscInt k = num - 1; k >= 0; k--) { /* a vertex that others went to may itself have gone on later */
     from[k] = patch->number[patch->joined[k]];
@@ -123,18 +124,11 @@ static PetscErrorCode Renumber(EqmSoup soup, EqmFlatPatch *patch, EqmChange *cha
     }
   }
   PetscCall(PetscSortIntWithArray(num, from, to));
-  PetscCallMPI(MPI_Bcast(&num, 1, MPIU_INT, 0, soup->comm));
+  PetscCallMPI(MPI_Bcast(&num, 1, MPIU_INT, 0, comm));
   if (rank) PetscCall(PetscMalloc2(num + 1, &from, num + 1, &to));
-  PetscCall(Share(soup->comm, &num, &from));
-  PetscCall(Share(soup->comm, &num, &to));
-  change->renumbers = (PetscBool)(num > 0);
-  PetscCall(PetscMalloc1(soup->vertex_end - soup->vertex_start, &change->vertex));
-  for (PetscInt v = soup->vertex_start; v < soup->vertex_end; v++) {
-    PetscInt k;
-
-    PetscCall(PetscFindInt(v, num, from, &k));
-    change->vertex[v - soup->vertex_start] = k >= 0 ? to[k] : v;
-  }
+  PetscCall(Share(comm, &num, &from));
+  PetscCall(Share(comm, &num, &to));
+  PetscCall(EqmChangeRenumber(change, num, from, to));
   PetscCall(PetscFree2(from, to));
   PetscFunctionReturn(0);
 }
@@ -160,7 +154,7 @@ PetscErrorCode EqmStepFlat(const EqmPrepareOptions *options, EqmChange *change, 
       PetscCall(PetscSNPrintf(report->what, sizeof(report->what),
                               "%" PetscInt64_FMT " triangles without area flipped or collapsed", report->count));
       PetscCall(ListCells(change->soup, &patch, &list));
-      PetscCall(Renumber(change->soup, &patch, change));
+      PetscCall(Renumber(&patch, change));
       PetscCall(EqmChangeAssemble(change, NULL, &list));
     }
     PetscCall(EqmFlatPatchReset(&patch));

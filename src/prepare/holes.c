@@ -99,13 +99,7 @@ static PetscErrorCode KeepCells(const EqmBoundary *boundary, EqmChange *change, 
     }
     PetscCall(EqmCellListAdd(list, c, vertex));
   }
-  change->renumbers = (PetscBool)(num_joined > 0);
-  PetscCall(PetscMalloc1(soup->vertex_end - soup->vertex_start, &change->vertex));
-  for (PetscInt v = soup->vertex_start; v < soup->vertex_end && num_joined; v++) {
-    PetscInt k;
-    PetscCall(PetscFindInt(v, num_joined, number, &k));
-    change->vertex[v - soup->vertex_start] = k >= 0 ? other[k] : v;
-  }
+  PetscCall(EqmChangeRenumber(change, num_joined, number, other));
   PetscCall(PetscFree2(number, other));
   PetscFunctionReturn(0);
 }

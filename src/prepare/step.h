@@ -30,6 +30,11 @@ PETSC_INTERN PetscErrorCode EqmStepRepair(const EqmPrepareOptions *, EqmChange *
 /* Replace the soup of a change by one with these added vertices and the cells of the list. Collective. */
 PETSC_INTERN PetscErrorCode EqmChangeAssemble(EqmChange *change, EqmVertexGroup *added, EqmCellList *list);
 
+/* The `num` vertices `from` of the soup before (ascending, the same on all ranks) have the numbers `to` now; call it
+   before the soup is replaced. Not collective. */
+PETSC_INTERN PetscErrorCode EqmChangeRenumber(EqmChange *change, PetscInt num, const PetscInt *from,
+                                              const PetscInt *to);
+
 /* The cells that a step has just added weigh `weight` times their measure. Not collective. */
 PETSC_INTERN PetscErrorCode EqmChangeWeighAdded(EqmChange *change, PetscReal weight);
 /* What `holes` does for solids. */
