@@ -1,8 +1,7 @@
 /* equimap measure MESH MAP: distortion and folds of any map of the mesh. */
 #include "app.h"
+#include "csvtable.h"
 #include "mesh/mesh_private.h"
-#include "base/atomicfile.h"
-#include "base/rows.h"
 #include "format/format.h"
 #include "format/image.h"
 #include "measure/foreign.h"
@@ -86,46 +85,6 @@ static PetscErrorCode PrintDistortion(const EqmDistortion *d, PetscBool surface,
   PetscFunctionReturn(0);
 }
 
-/* A table of reals per cell or vertex: `num` rows of `width` on rank 0. */
-typedef struct {
-  const char *header;
-  PetscInt num, width;
-  PetscReal *values;
-} Table;
-
-static void PrintTable(EqmAtomicFile *file, void *context)
-{
-  const Table *const table = context;
-
-  EqmAtomicPrint(file, "%s\n", table->header);
-  for (PetscInt i = 0; i < table->num; i++) {
-    EqmAtomicPrint(file, "%" PetscInt_FMT ",", i);
-    EqmAtomicPrintReals(file, table->width, table->values + (size_t)table->width * (size_t)i, ',');
-    EqmAtomicPrint(file, "\n");
-  }
-}
-
-/* Gather one or two columns (the second may be NULL) and write them. Collective. */
-static PetscErrorCode WriteTable(MPI_Comm comm, const char *file, const char *header, PetscInt num, PetscInt count,
-                                 const PetscReal *first, const PetscReal *second)
-{
-  Table table = {.header = header, .num = num, .width = second ? 2 : 1};
-  PetscReal *rows;
-  PetscMPIInt rank;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscMalloc2(table.width * count, &rows, rank == 0 ? table.width * num : 0, &table.values));
-  for (PetscInt i = 0; i < count; i++) {
-    rows[table.width * i] = first[i];
-    if (second) rows[table.width * i + 1] = second[i];
-  }
-  PetscCall(EqmFetchSlab(comm, count, rank == 0 ? num : 0, 0, MPIU_REAL, table.width, rows, table.values));
-  PetscCall(EqmAtomicPrintFile(comm, file, PrintTable, &table));
-  PetscCall(PetscFree2(rows, table.values));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Write(const MeasureOptions *options, Measured *m)
 {
   const PetscReal *per_cell, *per_vertex, *quasi, *factor;
@@ -137,12 +96,12 @@ static PetscErrorCode Write(const MeasureOptions *options, Measured *m)
   PetscCall(EqmMapGetQuasiConformal(m->map, &quasi));
   PetscCall(EqmMapGetConformalFactor(m->map, &factor));
   if (options->cells[0]) {
-    PetscCall(WriteTable(soup->comm, options->cells, quasi ? "cell,ratio,quasi_conformal" : "cell,ratio",
-                         soup->num_cells, soup->cell_end - soup->cell_start, per_cell, quasi));
+    PetscCall(EqmCsvTableWrite(soup->comm, options->cells, quasi ? "cell,ratio,quasi_conformal" : "cell,ratio",
+                            soup->num_cells, soup->cell_end - soup->cell_start, per_cell, quasi));
   }
   if (options->vertices[0]) {
-    PetscCall(WriteTable(soup->comm, options->vertices, factor ? "vertex,ratio,conformal_factor" : "vertex,ratio",
-                         soup->num_vertices, soup->vertex_end - soup->vertex_start, per_vertex, factor));
+    PetscCall(EqmCsvTableWrite(soup->comm, options->vertices, factor ? "vertex,ratio,conformal_factor" : "vertex,ratio",
+                            soup->num_vertices, soup->vertex_end - soup->vertex_start, per_vertex, factor));
   }
   PetscCall(EqmMapSetCost(m->map, m->ledger));
   if (options->output[0]) PetscCall(EqmMapWrite(m->map, options->output));

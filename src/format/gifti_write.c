@@ -3,6 +3,7 @@
 #include "encoding.h"
 #include "writers.h"
 #include "input.h"
+#include "gifti.h"
 #include "metadata.h"
 #include "scalar.h"
 
@@ -60,43 +61,6 @@ static void MetaDataEntry(Document *document, const char *name, const char *valu
   End(document);
 }
 
-/* What the surface is, from its points: on a sphere about the origin, flat, or what the input said. */
-static const char *GeometricType(const EqmSerialMesh *mesh, char *value, size_t length)
-{
-  PetscReal least = PETSC_MAX_REAL, most = 0.0;
-  PetscBool flat = PETSC_TRUE;
-
-  for (size_t i = 0; i < 3 * (size_t)mesh->num_cells; ++i) {
-    const PetscReal *const x = mesh->vertices + 3 * (size_t)mesh->cells[i];
-    const PetscReal squared = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
-
-    least = PetscMin(least, squared);
-    most = PetscMax(most, squared);
-    if (x[2] != mesh->vertices[3 * (size_t)mesh->cells[0] + 2]) flat = PETSC_FALSE;
-  }
-  if (flat) return "Flat";
-  if (most > 0.0 && most - least <= 1e-3 * most) return "Spherical";
-  if (!EqmMetadataGet(mesh->metadata, "GeometricType", value, length) || !strcmp(value, "Spherical") ||
-      !strcmp(value, "Flat"))
-    return "Anatomical";
-  return value;
-}
-
-/* Which hemisphere: what the input said, or what the file's name does in the manner of FreeSurfer (lh.) or HCP (.L.).
- */
-static PetscBool AnatomicalStructure(const EqmSerialMesh *mesh, const char *path, char *value, size_t length)
-{
-  const char *const slash = strrchr(path, '/'), *const name = slash ? slash + 1 : path;
-
-  if (EqmMetadataGet(mesh->metadata, "AnatomicalStructurePrimary", value, length)) return PETSC_TRUE;
-  if (!strncmp(name, "lh.", 3) || strstr(name, ".L.") || strstr(name, "hemi-L")) {
-    snprintf(value, length, "CortexLeft");
-  } else if (!strncmp(name, "rh.", 3) || strstr(name, ".R.") || strstr(name, "hemi-R")) {
-    snprintf(value, length, "CortexRight");
-  }
-  return value[0] ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* Of the points: structure and type, and the space that they are in, unknown and unchanged unless the input said it. */
 static void PointMetaData(Document *document, const EqmSerialMesh *mesh)
 {
@@ -106,11 +70,11 @@ static void PointMetaData(Document *document, const EqmSerialMesh *mesh)
   char value[1024];
 
   Begin(document, "MetaData");
-  if (AnatomicalStructure(mesh, document->file->path, value, sizeof(value)))
+  if (EqmGiftiStructure(mesh, document->file->path, value, sizeof(value)))
     MetaDataEntry(document, "AnatomicalStructurePrimary", value);
   if (EqmMetadataGet(mesh->metadata, "AnatomicalStructureSecondary", value, sizeof(value)))
     MetaDataEntry(document, "AnatomicalStructureSecondary", value);
-  MetaDataEntry(document, "GeometricType", GeometricType(mesh, value, sizeof(value)));
+  MetaDataEntry(document, "GeometricType", EqmGiftiGeometricType(mesh, value, sizeof(value)));
   End(document);
   Begin(document, "CoordinateSystemTransformMatrix");
   for (int i = 0; i < 3; ++i)
@@ -252,7 +216,7 @@ static PetscErrorCode WriteDocument(Document *document, const EqmSerialMesh *mes
   snprintf(value, sizeof(value), "%d", num_shapes ? (int)num_shapes : 2);
   Attribute(document, "NumberOfDataArrays", value);
   Begin(document, "MetaData");
-  if (num_shapes && AnatomicalStructure(mesh, document->file->path, value, sizeof(value)))
+  if (num_shapes && EqmGiftiStructure(mesh, document->file->path, value, sizeof(value)))
     MetaDataEntry(document, "AnatomicalStructurePrimary", value);
   End(document);
   Begin(document, "LabelTable");

@@ -6,15 +6,6 @@
 typedef enum { STOP_AUTO, STOP_RISE, STOP_STRETCH, STOP_NONE } FixedPointStop;
 static const char *const fixed_point_stops[] = {"auto", "rise", "stretch", "none", "EqmFixedPointStop", "EQM_", NULL};
 
-typedef struct {
-  PetscEnum stop; /* a FixedPointStop */
-  PetscReal eps;
-  PetscBool ended; /* the last step met eps */
-  PetscReal *weights, *columns, *inverted;
-  signed char *group;
-  EqmPlace to, before;
-} FixedPoint;
-
 /* The energy, with landmarks the sum of 000 (46). */
 static PetscErrorCode TakeObjective(EqmMethod method, EqmIterate iterate)
 {
@@ -44,7 +35,7 @@ static PetscErrorCode CheckLandmarks(EqmMethod method)
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
   const EqmMesh mesh = method->problem->mesh;
-  FixedPoint *const fp = method->data;
+  EqmFixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
   PetscCall(CheckLandmarks(method));
@@ -61,7 +52,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 
 static PetscErrorCode Reset(EqmMethod method)
 {
-  FixedPoint *const fp = method->data;
+  EqmFixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
   PetscCall(PetscFree4(fp->weights, fp->columns, fp->inverted, fp->group));
@@ -70,130 +61,10 @@ static PetscErrorCode Reset(EqmMethod method)
   PetscFunctionReturn(0);
 }
 
-/* New columns for one group of vertices: -L_gg^-1 L_gh z_h, where `z` (per local vertex, two coordinates) is zero on
-   the group. */
-static PetscErrorCode SolveGroup(EqmMethod method, EqmIterate iterate, signed char group, const PetscReal *z)
-{
-  FixedPoint *const fp = method->data;
-  const PetscInt n = method->problem->mesh->num_owned;
-  PetscReal *rhs;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(2 * n, &rhs));
-  PetscCall(EqmLaplacianApply(method->problem->mesh, fp->weights, 2, z, rhs));
-  for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt c = 0; c < 2; c++) fp->columns[c * n + v] = fp->group[v] == group ? -rhs[2 * v + c] : 0.;
-  }
-  PetscCall(PetscFree(rhs));
-  PetscCall(EqmGroupSolve(method->problem, 2, fp->columns));
-  PetscFunctionReturn(0);
-}
-
-/* 000 (14b): where the boundary would follow the interior, inverted in the circle, centred (14d): two columns on the
-   owned boundary vertices. A vertex at the centre is everywhere far out: it draws nowhere. One so near to it that
-   rounding decides on the direction would draw all of the boundary far to one side, and centring it again leave that
-   rounding. */
-static PetscErrorCode FollowInterior(EqmMethod method, EqmIterate iterate)
-{
-  FixedPoint *const fp = method->data;
-  const EqmMesh mesh = method->problem->mesh;
-  const PetscInt n = mesh->num_owned;
-  PetscReal sum[2] = {0., 0.};
-
-  PetscFunctionBegin;
-  for (PetscInt v = 0; v < mesh->num_local; v++) {
-    const PetscReal *const x = iterate->place.x + 2 * v, squared = x[0] * x[0] + x[1] * x[1];
-    const PetscBool draws = (PetscBool)(fp->group[v] == 0 && squared > PETSC_MACHINE_EPSILON);
-    for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = draws ? x[c] / squared : 0.;
-  }
-  PetscCall(SolveGroup(method, iterate, 1, fp->inverted));
-  for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt c = 0; c < 2 && fp->group[v] == 1; c++) sum[c] += fp->columns[c * n + v];
-  }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
-  for (PetscInt k = 0; k < 2 * n; k++) {
-    if (fp->group[k % n] == 1) fp->columns[k] -= sum[k / n] / mesh->num_boundary_vertices;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The boundary put on the circle (14e) after a share of the way from where it is to where it would follow; a vertex
-   that is drawn nowhere stays. */
-static PetscErrorCode PutOnCircle(EqmMethod method, EqmIterate iterate, PetscReal share, EqmPlace *to)
-{
-  const FixedPoint *const fp = method->data;
-  const EqmMesh mesh = method->problem->mesh;
-  const PetscInt n = mesh->num_owned;
-
-  PetscFunctionBegin;
-  for (PetscInt v = 0; v < n; v++) {
-    const PetscReal *const x = iterate->place.x + 2 * v, b[2] = {fp->columns[v], fp->columns[n + v]};
-    const PetscReal length = PetscSqrtReal(b[0] * b[0] + b[1] * b[1]);
-    if (fp->group[v] != 1) continue;
-    if (length > PETSC_MACHINE_EPSILON) {
-      const PetscReal angle = share * PetscAtan2Real(x[0] * b[1] - x[1] * b[0], x[0] * b[0] + x[1] * b[1]);
-      const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
-      to->x[2 * v] = share == 1. ? b[0] / length : c * x[0] - s * x[1];
-      to->x[2 * v + 1] = share == 1. ? b[1] / length : s * x[0] + c * x[1];
-    } else {
-      for (PetscInt c = 0; c < 2; c++) to->x[2 * v + c] = x[c];
-    }
-  }
-  PetscCall(EqmMeshUpdateGhosts(mesh, 2, to->x));
-  PetscFunctionReturn(0);
-}
-
-/* 000 (14b), (14d), (14e) do not keep the boundary in order (10): where they break it, it goes only so far as the order
-   holds, half the way, a quarter, ... and at last not at all. */
-static PetscErrorCode MoveBoundary(EqmMethod method, EqmIterate iterate)
-{
-  enum { MOST_HALVINGS = 10 };
-  FixedPoint *const fp = method->data;
-  const EqmDomain domain = method->problem->domain;
-  PetscBool in_order = PETSC_FALSE;
-  PetscReal share = 1.;
-
-  PetscFunctionBegin;
-  PetscCall(FollowInterior(method, iterate));
-  PetscCall(EqmPlaceCopy(domain, &iterate->place, &fp->to));
-  for (PetscInt k = 0; k < MOST_HALVINGS && !in_order; k++, share *= .5) {
-    PetscCall(PutOnCircle(method, iterate, share, &fp->to));
-    PetscCall(EqmDomainBoundaryInOrder(domain, &fp->to, &in_order));
-    iterate->step_length = share;
-  }
-  if (in_order)
-    PetscCall(EqmPlaceCopy(domain, &fp->to, &iterate->place));
-  else
-    iterate->step_length = 0.;
-  PetscFunctionReturn(0);
-}
-
-/* One pass of 000 (14) in the order that reproduces the published table: boundary first, then the interior with the new
-   boundary, both with L_S of the old map. */
-static PetscErrorCode StepOnDisk(EqmMethod method, EqmIterate iterate)
-{
-  FixedPoint *const fp = method->data;
-  const EqmMesh mesh = method->problem->mesh;
-  const PetscInt n = mesh->num_owned;
-
-  PetscFunctionBegin;
-  PetscCall(EqmGroupFactor(method->problem, fp->weights, fp->group, NULL));
-  PetscCall(MoveBoundary(method, iterate));
-  for (PetscInt v = 0; v < mesh->num_local; v++) {
-    for (PetscInt c = 0; c < 2; c++) fp->inverted[2 * v + c] = fp->group[v] == 1 ? iterate->place.x[2 * v + c] : 0.;
-  }
-  PetscCall(SolveGroup(method, iterate, 0, fp->inverted));
-  for (PetscInt v = 0; v < n; v++) {
-    for (PetscInt c = 0; c < 2 && fp->group[v] == 0; c++) iterate->place.x[2 * v + c] = fp->columns[c * n + v];
-  }
-  PetscCall(EqmMeshUpdateGhosts(mesh, 2, iterate->place.x));
-  PetscFunctionReturn(0);
-}
-
 /* One pass of the iteration for the domain. */
 static PetscErrorCode Pass(EqmMethod method, EqmIterate iterate)
 {
-  FixedPoint *const fp = method->data;
+  EqmFixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
   if (method->problem->domain->curved_image) {
@@ -202,7 +73,7 @@ static PetscErrorCode Pass(EqmMethod method, EqmIterate iterate)
   }
   PetscCall(EqmLaplacianWeights(method->problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, fp->weights));
   if (method->problem->domain->motion[1] == &EqmMotionCircle) {
-    PetscCall(StepOnDisk(method, iterate));
+    PetscCall(EqmFixedPointStepOnDisk(method, iterate));
   } else if (method->problem->landmarks.num_total > 0) {
     PetscCall(EqmFixedPointDraw(method->problem, fp->weights, &iterate->place));
   } else {
@@ -221,7 +92,7 @@ static PetscReal Stretch(EqmProblem problem, const EqmImageTotals *totals)
 /* 001 Algorithm 2, line 5: the step is the last one if E_S fell by no more than eps. */
 static PetscErrorCode JudgeStretch(EqmMethod method, PetscReal fall)
 {
-  FixedPoint *const fp = method->data;
+  EqmFixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
   fp->ended = (PetscBool)(fall <= fp->eps);
@@ -234,7 +105,7 @@ static PetscErrorCode JudgeStretch(EqmMethod method, PetscReal fall)
 /* Back to the map before the step that raised the energy (001 Table 5). */
 static PetscErrorCode TakeBack(EqmMethod method, EqmIterate iterate)
 {
-  FixedPoint *const fp = method->data;
+  EqmFixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmPlaceCopy(method->problem->domain, &fp->before, &iterate->place));
@@ -248,7 +119,7 @@ static PetscErrorCode TakeBack(EqmMethod method, EqmIterate iterate)
  */
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
-  FixedPoint *const fp = method->data;
+  EqmFixedPoint *const fp = method->data;
   const EqmImageTotals before = iterate->totals;
   const FixedPointStop by_default = method->problem->domain->curved_image ? STOP_RISE : STOP_NONE,
                        stop = (int)fp->stop == STOP_AUTO ? by_default : (FixedPointStop)fp->stop;
@@ -274,7 +145,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
 /* Nothing but the map goes over from step to step, and whether there is another. */
 static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
-  FixedPoint *const fp = method->data;
+  EqmFixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
   (void)iterate;
@@ -285,7 +156,7 @@ static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state
 
 static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
 {
-  FixedPoint *const fp = method->data;
+  EqmFixedPoint *const fp = method->data;
 
   PetscFunctionBegin;
   PetscCall(
@@ -302,7 +173,7 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
 
 PetscErrorCode EqmMethodCreateFixedPoint(EqmMethod method)
 {
-  FixedPoint *fp;
+  EqmFixedPoint *fp;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&fp));

@@ -1,29 +1,12 @@
 /* The two-phase quasi-implicit Euler method (004 Algorithm 5.1). Phase I, (I + dt A) f' = f, damps a poor first map;
    phase II, (I + dt (A - <A f, f>)) f' = f, converges to the harmonic map; its matrix is indefinite. */
-#include "method/flow.h"
+#include "method/qiem.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
 #include "measure/quantile.h"
 #include <string.h>
 
-enum { MOST_ATTEMPTS = 60, MOST_STEPS_IN_PHASE1 = 10, MOST_CUTS = 3, MOST_SHRINKS = 10, MOST_RESTARTS = 20 };
-static const PetscReal collapsed = .5, near_enough = .1; /* epsilon_2 and epsilon_3 of S1.a and S1.c */
-
-typedef struct {
-  EqmFlowSettings flow;
-  char phase1[8], phase2[8]; /* letters of the strategies in use */
-  PetscReal factor, rise;    /* alpha and epsilon */
-  EqmGeneral matrix;
-  EqmUnknowns unknowns;
-  PetscInt phase, steps, cuts, shrinks, restarts;
-  PetscReal dt, dt0, most_dt; /* present, first of this attempt, largest of phase II */
-  PetscReal energy, change;   /* of the present map, and by the last step; change < 0: no step yet */
-  PetscReal factored;         /* phase I: the time step that the factor belongs to */
-  PetscBool ended;
-  EqmPlace start, trial;
-  const PetscReal *weights;
-  PetscReal *columns;
-} Qiem;
+enum { MOST_ATTEMPTS = 60, MOST_RESTARTS = 20 };
 
 /* 004 Algorithm 5.1, lines 1 to 5, for the surface scaled to the sphere's area, as the formula is no invariant: the
    mean of the middle tenth of the areas to the first power k/3 - 7, k = 1, 2, ..., that is not above 3500. */
@@ -46,7 +29,7 @@ static PetscErrorCode FirstTimeStep(EqmMethod method, EqmIterate iterate, PetscR
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
   const EqmMesh mesh = method->problem->mesh;
-  Qiem *const q = method->data;
+  EqmQiem *const q = method->data;
   unsigned char *count;
 
   PetscFunctionBegin;
@@ -76,7 +59,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 
 static PetscErrorCode Reset(EqmMethod method)
 {
-  Qiem *const q = method->data;
+  EqmQiem *const q = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmGeneralDestroy(&q->matrix));
@@ -92,7 +75,7 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 {
   const EqmMethod method = context;
   const EqmIterate iterate = method->iterate;
-  const Qiem *const q = method->data;
+  const EqmQiem *const q = method->data;
   const PetscInt *const v = method->problem->mesh->cells + 3 * cell;
   const PetscReal *const w = q->weights + 3 * cell, *const x = iterate->place.x;
 
@@ -111,7 +94,7 @@ static void CellMatrix(void *context, PetscInt cell, PetscReal *matrix)
 /* Phase I reuses its factor while the time step stays the same; a restarted run factors again. */
 static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
-  Qiem *const q = method->data;
+  EqmQiem *const q = method->data;
   PetscInt *const counts[] = {&q->phase, &q->steps, &q->cuts, &q->shrinks, &q->restarts};
   static const char *const names[] = {"phase", "steps", "cuts", "shrinks", "restarts"};
   PetscReal dt;
@@ -138,7 +121,7 @@ static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state
 /* One solve with the present time step into the trial; the energy is infinite where the matrix is singular. */
 static PetscErrorCode Attempt(EqmMethod method, EqmIterate iterate, PetscReal *energy)
 {
-  Qiem *const q = method->data;
+  EqmQiem *const q = method->data;
   const PetscInt n = method->problem->mesh->num_owned;
   PetscBool success = PETSC_TRUE;
 
@@ -155,118 +138,22 @@ static PetscErrorCode Attempt(EqmMethod method, EqmIterate iterate, PetscReal *e
   PetscFunctionReturn(0);
 }
 
-/* Is the strategy among those that -qiem_phase1 or -qiem_phase2 lists? */
-static PetscBool Uses(const char *strategies, char letter)
-{
-  return (PetscBool)(strchr(strategies, letter) != NULL);
-}
-
-/* Back to the first map of the phase, with the given first time step, unless the present one is shorter already. */
-static PetscErrorCode Restart(EqmMethod method, EqmIterate iterate, PetscReal dt0)
-{
-  Qiem *const q = method->data;
-
-  PetscFunctionBegin;
-  q->dt0 = dt0;
-  q->dt = PetscMin(q->dt, dt0);
-  q->steps = q->cuts = 0;
-  q->change = -1.;
-  q->restarts++;
-  PetscCall(EqmPlaceCopy(method->problem->domain, &q->start, &iterate->place));
-  PetscCall(EqmFlowEnergy(method->problem, &iterate->place, &q->energy));
-  PetscFunctionReturn(0);
-}
-
-/* Accept a trial, or repeat the step with other parameters. */
-typedef enum { TAKE, AGAIN } Verdict;
-
-/* S1.a: a map that collapses to a point; S1.b: an energy that does not fall. */
-static PetscErrorCode JudgePhase1(EqmMethod method, EqmIterate iterate, PetscReal energy, Verdict *verdict)
-{
-  Qiem *const q = method->data;
-  const char *const strategies = q->phase1;
-
-  PetscFunctionBegin;
-  *verdict = AGAIN;
-  if (Uses(strategies, 'a') && energy < collapsed) {
-    PetscCall(Restart(method, iterate, .5 * q->dt));
-  } else if (Uses(strategies, 'b') && !(energy <= q->energy) && q->dt > 1.) {
-    q->dt = PetscMax(1., .5 * q->dt);
-  } else {
-    *verdict = TAKE;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The end of phase I, or S1.c: a restart when it takes too long, unless the restart would repeat the same steps. */
-static PetscErrorCode AfterPhase1(EqmMethod method, EqmIterate iterate, PetscReal change)
-{
-  Qiem *const q = method->data;
-
-  PetscFunctionBegin;
-  if (PetscAbsReal(change) < near_enough) {
-    q->phase = 2;
-    q->dt = q->dt0;
-    q->steps = q->restarts = 0;
-    q->change = -1.;
-    PetscCall(EqmPlaceCopy(method->problem->domain, &iterate->place, &q->start));
-  } else if (Uses(q->phase1, 'c') && q->steps > MOST_STEPS_IN_PHASE1 && q->dt != q->dt0) {
-    PetscCall(Restart(method, iterate, q->dt));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* S2.a: halve the step where the energy rises; S2.b: after three halvings restart with a smaller first step; S2.c: a
-   shorter step where the energy changed ten times as much as before, a limited number of times: the change before may
-   have been negligible.
- */
-static PetscErrorCode JudgePhase2(EqmMethod method, EqmIterate iterate, PetscReal energy, Verdict *verdict)
-{
-  Qiem *const q = method->data;
-
-  PetscFunctionBegin;
-  *verdict = AGAIN;
-  if (Uses(q->phase2, 'a') && !(energy - q->energy < q->rise)) {
-    q->dt *= .5;
-    if (Uses(q->phase2, 'b') && ++q->cuts >= MOST_CUTS) PetscCall(Restart(method, iterate, q->dt0 / q->factor));
-  } else if (Uses(q->phase2, 'c') && q->change > 0. && PetscAbsReal(energy - q->energy) >= 10. * q->change &&
-             q->shrinks++ < MOST_SHRINKS) {
-    q->dt /= q->factor;
-  } else {
-    *verdict = TAKE;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The other half of S2.c, a longer step next time; convergence. */
-static PetscErrorCode AfterPhase2(EqmMethod method, EqmIterate iterate, PetscReal change)
-{
-  Qiem *const q = method->data;
-
-  PetscFunctionBegin;
-  if (Uses(q->phase2, 'c') && q->change > 0.) q->dt = PetscMin(q->most_dt, q->dt * q->factor);
-  q->change = PetscAbsReal(change);
-  q->cuts = q->shrinks = 0;
-  PetscCall(EqmFlowJudge(method, change, &q->ended));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
-  Qiem *const q = method->data;
+  EqmQiem *const q = method->data;
   const PetscInt phase = q->phase;
   PetscReal energy, change, dt;
-  Verdict verdict = AGAIN;
+  EqmQiemVerdict verdict = EQM_QIEM_AGAIN;
 
   PetscFunctionBegin;
   *outcome = EQM_STEP_CONVERGED;
   if (q->ended) PetscFunctionReturn(0);
   *outcome = EQM_STEP_STALLED;
-  for (PetscInt attempt = 0; verdict == AGAIN; attempt++) {
+  for (PetscInt attempt = 0; verdict == EQM_QIEM_AGAIN; attempt++) {
     if (attempt == MOST_ATTEMPTS || q->restarts > MOST_RESTARTS) PetscFunctionReturn(0);
     PetscCall(Attempt(method, iterate, &energy));
-    PetscCall(phase == 1 ? JudgePhase1(method, iterate, energy, &verdict)
-                         : JudgePhase2(method, iterate, energy, &verdict));
+    PetscCall(phase == 1 ? EqmQiemJudgePhase1(method, iterate, energy, &verdict)
+                         : EqmQiemJudgePhase2(method, iterate, energy, &verdict));
   }
   if (!(energy < INFINITY)) PetscFunctionReturn(0);
   dt = q->dt;
@@ -282,7 +169,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   PetscCall(EqmPlaceMakeFrames(method->problem->domain, &iterate->place));
   PetscCall(EqmFlowChange(method->problem, &q->trial, &iterate->place, &iterate->figures.change));
   iterate->figures.phase = phase;
-  PetscCall(phase == 1 ? AfterPhase1(method, iterate, change) : AfterPhase2(method, iterate, change));
+  PetscCall(phase == 1 ? EqmQiemAfterPhase1(method, iterate, change) : EqmQiemAfterPhase2(method, iterate, change));
   PetscCall(EqmFlowAccept(method->problem, iterate, &iterate->place, dt));
   *outcome = EQM_STEP_TAKEN;
   PetscFunctionReturn(0);
@@ -290,7 +177,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
 
 static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
 {
-  Qiem *const q = method->data;
+  EqmQiem *const q = method->data;
 
   PetscFunctionBegin;
   PetscCall(EqmFlowSetFromOptions(method, PetscOptionsObject));
@@ -310,7 +197,7 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
 
 PetscErrorCode EqmMethodCreateQiem(EqmMethod method)
 {
-  Qiem *q;
+  EqmQiem *q;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&q));
