@@ -38,8 +38,6 @@ static PetscErrorCode SlabOf(MPI_Comm comm, PetscInt total, PetscInt width, EqmS
 static PetscErrorCode CheckShape(EqmH5 h5, const char *path, PetscInt least, PetscInt most, PetscInt64 *total,
                                  PetscInt64 *width)
 {
-  const hsize_t best_packing = 1032; /* of HDF5's deflate filter */
-  hsize_t file_bytes = 0;
   PetscBool has;
   char what[256];
 
@@ -52,11 +50,7 @@ static PetscErrorCode CheckShape(EqmH5 h5, const char *path, PetscInt least, Pet
   snprintf(what, sizeof(what), "%s is %lld x %lld; it must have %d%s columns", path, (long long)*total,
            (long long)*width, (int)least, most > least ? " or 4" : "");
   PetscCall(EqmH5Agree(h5, *width >= least && *width <= most ? PETSC_TRUE : PETSC_FALSE, what));
-  snprintf(what, sizeof(what), "%s has %lld rows: too many for the file, or for indices", path, (long long)*total);
-  if (H5Fget_filesize(h5->file, &file_bytes) < 0) file_bytes = 0;
-  PetscCall(
-      EqmH5Agree(h5, *total <= PETSC_MAX_INT && (hsize_t)*total / best_packing <= file_bytes ? PETSC_TRUE : PETSC_FALSE,
-                 what));
+  PetscCall(EqmH5CheckRows(h5, path, *total));
   PetscFunctionReturn(0);
 }
 

@@ -18,12 +18,13 @@ static PetscErrorCode ParseDimensions(EqmInput *in, xmlNodePtr node, EqmXdmfArra
   array->rows = -1;
   array->width = 1;
   for (EqmSkipSpace(&numbers, 0); EqmRemaining(&numbers); EqmSkipSpace(&numbers, 0)) {
-    if (!EqmReadInteger(&numbers, &n) || n < 0 || n > PETSC_MAX_INT || array->width > PETSC_MAX_INT)
+    if (!EqmReadInteger(&numbers, &n) || n < 0 || n > PETSC_MAX_INT)
       return EqmXmlReject(in, node, "its Dimensions=\"%s\" are none", text);
     if (array->rows < 0)
       array->rows = n;
     else
       array->width *= n;
+    if (array->width > PETSC_MAX_INT) return EqmXmlReject(in, node, "its Dimensions=\"%s\" are too many", text);
   }
   if (array->rows < 0 || array->width < 1) return EqmXmlReject(in, node, "it has no Dimensions");
   return 0;
@@ -44,7 +45,7 @@ static PetscErrorCode TakeReference(EqmInput *in, xmlNodePtr node, const EqmXmlT
   return 0;
 }
 
-/* The numbers of the text; every number takes two bytes at least. */
+/* The numbers of the text; every number takes a byte at least. */
 static PetscErrorCode TakeNumbers(EqmInput *in, xmlNodePtr node, const EqmXmlText *text, EqmXdmfArray *array)
 {
   const PetscInt64 count = array->rows * array->width;

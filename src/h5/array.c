@@ -161,3 +161,20 @@ PetscErrorCode EqmH5GetShape(EqmH5 h5, const char *path, PetscInt64 *total, Pets
   *width = (PetscInt64)(rank == 2 ? shape[1] : 0);
   PetscFunctionReturn(0);
 }
+
+/* Refuse rows that PetscInt cannot count or that the file cannot hold, so that a small file asks for no large memory.
+   Errors: EQM_ERR_IO. Collective. */
+PetscErrorCode EqmH5CheckRows(EqmH5 h5, const char *path, PetscInt64 total)
+{
+  const hsize_t best_packing = 1032; /* of HDF5's deflate filter */
+  hsize_t file_bytes = 0;
+  char what[EQM_MESSAGE_MAX / 2];
+
+  PetscFunctionBegin;
+  (void)snprintf(what, sizeof(what), "%s has %lld rows: too many for the file, or for indices", path, (long long)total);
+  if (H5Fget_filesize(h5->file, &file_bytes) < 0) file_bytes = 0;
+  PetscCall(EqmH5Agree(h5,
+                       (PetscBool)(total >= 0 && total <= PETSC_MAX_INT && (hsize_t)total / best_packing <= file_bytes),
+                       what));
+  PetscFunctionReturn(0);
+}

@@ -55,6 +55,7 @@ PETSC_INTERN PetscErrorCode EqmH5GetChecksum(EqmH5 h5, const char *path, PetscIn
 PETSC_INTERN PetscErrorCode EqmH5HasDataset(EqmH5 h5, const char *path, PetscBool *has);
 PETSC_INTERN PetscErrorCode EqmH5ListNumbers(EqmH5 h5, const char *group, PetscInt *num, char (**names)[EQM_H5_NAME]);
 PETSC_INTERN PetscErrorCode EqmH5GetShape(EqmH5 h5, const char *path, PetscInt64 *total, PetscInt64 *width);
+PETSC_INTERN PetscErrorCode EqmH5CheckRows(EqmH5 h5, const char *path, PetscInt64 total);
 PETSC_INTERN PetscErrorCode EqmH5ReadReals(EqmH5 h5, const char *path, EqmSlab slab, PetscReal *values);
 PETSC_INTERN PetscErrorCode EqmH5ReadIntegers(EqmH5 h5, const char *path, EqmSlab slab, PetscInt64 *values);
 PETSC_INTERN PetscErrorCode EqmH5GetReal(EqmH5 h5, const char *name, PetscReal fallback, PetscReal *value);

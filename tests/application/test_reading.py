@@ -74,7 +74,9 @@ def check_xdmf(program):
         assert file["mesh/vertices"][:].tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
         assert file["mesh/cells"][:].tolist() == [[0, 1, 2], [0, 2, 3]] and file["cell/weight"][:].tolist() == [0.5, 2.5]
     for old, new, words in (("Triangle", "Hexahedron", "Hexahedron"), ("0 2 3<", "0 2 9<", "out of range"), (' Format="XML">0 0', ' Format="HDF">gone.h5:/x', "gone.h5"),
-                            ("<Topology", "<Nothing", "Topology"), ("0 1 2 0 2 3", "0 1 2 0 2", "number 5 of 6")):
+                            ("<Topology", "<Nothing", "Topology"), ("0 1 2 0 2 3", "0 1 2 0 2", "number 5 of 6"), ("0 2 3<", "0 2 .5<", "whole number"),
+                            ('"2 3"', '"2000000000 3"', "too short"), ('"4 2"', '"2000000000 2000000000 2000000000"', "too many"),
+                            ('"2 3" Format="XML">0 1 2 0 2 3', '"2000000000 3" Format="HDF">map.h5:/mesh/cells', "numbers that the XDMF file says")):
         assert old in text
         program.write("bad.xdmf", text.replace(old, new))
         result = program.succeed("check", "bad.xdmf", codes=(3, 6))
