@@ -2,6 +2,7 @@
    intrinsic Delaunay triangulation (docs/methods.md, Thin limbs). */
 #include "solver/solver_private.h"
 #include "solver/mend.h"
+#include "base/quiet.h"
 #include "domain/domain_private.h"
 #include <string.h>
 
@@ -50,15 +51,33 @@ static PetscErrorCode AcceptIfBetter(EqmSolver solver, EqmProblem other, EqmIter
   PetscFunctionReturn(0);
 }
 
+/* A first map of the flipped mesh, if its cells allow one: the solver has a map already. Collective. */
+static PetscErrorCode StartFlipped(EqmProblem problem, EqmIterate found, PetscBool *made)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  EqmStartOptions options;
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStartOptionsDefault(&options));
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
+  error = EqmStartRun(&EqmStartSphereResolved, problem, found, &options);
+  PetscCall(PetscPopErrorHandler());
+  PetscCheck(!error || error == EQM_ERR_MESH, problem->comm, error, "%s", message);
+  *made = (PetscBool)!error;
+  if (error) PetscCall(EqmProblemNotify(problem, "no map there: %s\n", message));
+  PetscFunctionReturn(0);
+}
+
 /* The map of the flipped mesh. Two of its triangles may have the same corners, so folds are not counted there. */
 static PetscErrorCode SolveFlipped(EqmSolver solver, EqmSoup flipped)
 {
   const EqmLedger ledger = solver->mesh->ledger;
-  EqmStartOptions options;
   EqmMesh mesh;
   EqmDomain domain;
   EqmProblem problem;
   EqmIterate found;
+  PetscBool made;
 
   PetscFunctionBegin;
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DISTRIBUTE));
@@ -68,10 +87,9 @@ static PetscErrorCode SolveFlipped(EqmSolver solver, EqmSoup flipped)
   PetscCall(EqmDomainCreateSphere(mesh, &domain));
   PetscCall(EqmProblemCreate(domain, solver->problem->objective, &problem));
   PetscCall(EqmIterateCreate(problem, &found));
-  PetscCall(EqmStartOptionsDefault(&options));
-  PetscCall(EqmStartRun(&EqmStartSphereResolved, problem, found, &options));
+  PetscCall(StartFlipped(problem, found, &made));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_START));
-  PetscCall(AcceptIfBetter(solver, problem, found, flipped));
+  if (made) PetscCall(AcceptIfBetter(solver, problem, found, flipped));
   PetscCall(EqmIterateDestroy(&found));
   PetscCall(EqmProblemDestroy(&problem));
   PetscCall(EqmMeshDestroy(&mesh));
