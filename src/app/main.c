@@ -2,6 +2,7 @@
 #include "catalogue.h"
 #include "commandline.h"
 #include "commands.h"
+#include "optionsfile.h"
 #include <omp.h>
 #include <signal.h>
 #include <stdio.h>
@@ -9,22 +10,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Is there a file of that name that rank 0 can read? */
-static PetscErrorCode CheckReadable(const char *file)
-{
-  PetscMPIInt rank;
-  PetscBool readable = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  if (rank == 0) PetscCall(PetscTestFile(file, 'r', &readable));
-  PetscCallMPI(MPI_Bcast(&readable, 1, MPIU_BOOL, 0, PETSC_COMM_WORLD));
-  if (!readable) EqmFail(PETSC_COMM_WORLD, EQM_ERR_IO, "cannot read the options file '%s'", file);
-  PetscFunctionReturn(0);
-}
-
-/* Options from files, YAML if they are called .yaml or .yml; what stands on the command line wins. Not left to PETSc,
-   which answers a missing file with a trace, and -history with a copy of the screen in the file. */
+/* Options from files; what stands on the command line wins. Not left to PETSc, which answers -history with a copy of
+   the screen in the file. */
 static PetscErrorCode InsertOptions(const EqmCommandLine *line, int argc, char **argv)
 {
   char viewer[PETSC_MAX_PATH_LEN] = "";
@@ -33,20 +20,7 @@ static PetscErrorCode InsertOptions(const EqmCommandLine *line, int argc, char *
   PetscFunctionBegin;
   PetscCall(PetscOptionsHasName(NULL, NULL, "-log_view", &logs_already));
   PetscCall(EqmNoteForeignOptions(argc, argv));
-  for (int k = 0; k < line->num_options_files; k++) {
-    PetscErrorCode error;
-
-    PetscCall(CheckReadable(line->options_file[k]));
-    PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-    error = PetscOptionsInsertFile(PETSC_COMM_WORLD, NULL, line->options_file[k], PETSC_TRUE);
-    PetscCall(PetscPopErrorHandler());
-    if (error) {
-      EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE,
-              "cannot understand the options file '%s': in a .yaml file write lines like max_it: 100, in others lines "
-              "like -max_it 100",
-              line->options_file[k]);
-    }
-  }
+  for (int k = 0; k < line->num_options_files; k++) PetscCall(EqmOptionsFileInsert(NULL, line->options_file[k]));
   PetscCall(PetscOptionsInsertArgs(NULL, argc - 1, argv + 1));
   if (line->history) PetscCall(PetscOptionsSetValue(NULL, "-history", line->history));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-log_view", viewer, sizeof(viewer), &log_view));

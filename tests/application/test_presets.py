@@ -91,6 +91,12 @@ def main(program):
         file.write("max_it: [1,\n method")
     damaged = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "damaged.yaml", codes=(2,))
     assert "cannot understand the options file 'damaged.yaml'" in damaged.stderr
+    for name, text, words in (("again.txt", "-options_file again.txt\n", "names another"), ("again.yaml", "options_file: again.yaml\n", "names another"),
+                              ("alias.yaml", "a: &x {b: *x}\n", "aliases"), ("bytes.yaml", "max_it: 1\0", "no text"), ("long.yaml", "#" * 2000000, "million")):
+        with open(name, "w") as file:
+            file.write(text)
+        refused = run("disk", "patch.obj", "-o", "new.h5", "-options_file", name, codes=(2,))
+        assert f"the options file '{name}'" in refused.stderr and words in refused.stderr, refused.stderr
     with open("misspelt.yaml", "w") as file:
         file.write("maxit: 3\n")
     misspelt = run("disk", "patch.obj", "-o", "new.h5", "-options_file", "misspelt.yaml", codes=(2,))

@@ -1,11 +1,9 @@
-/* Readers that open files themselves: meshes in HDF5 (EQM_FUZZ_HDF5), densities (EQM_FUZZ_DENSITY), tables of landmarks
-   (EQM_FUZZ_TABLE). */
+/* Readers that open files themselves: meshes in HDF5 (EQM_FUZZ_HDF5) and XDMF (EQM_FUZZ_XDMF), densities
+   (EQM_FUZZ_DENSITY), tables of landmarks (EQM_FUZZ_TABLE). */
 #define _GNU_SOURCE
-#include "fuzz.h"
+#include "fuzz_memory.h"
 #include "mesh/mesh_private.h"
-#include <stdio.h>
-#include <sys/mman.h>
-#include <unistd.h>
+#include "format/format.h"
 #include "format/hdf5.h"
 #include "format/table.h"
 
@@ -16,6 +14,24 @@ static PetscErrorCode Read(const char *file)
   PetscErrorCode code = EqmSoupReadHdf5(PETSC_COMM_SELF, file, &soup);
 
   CLAIM(code ? !soup : soup->num_cells > 0);
+  return EqmSoupDestroy(&soup);
+}
+#elif defined(EQM_FUZZ_XDMF)
+/* The arrays may be those of mesh.h5, beside the file. */
+static PetscErrorCode Read(const char *file)
+{
+  static EqmSoup beside;
+  EqmSoup soup = NULL;
+  PetscErrorCode code;
+
+  if (!beside) {
+    CLAIM(!EqmSoupGenerate(PETSC_COMM_SELF, "hills", 12, 0, &beside));
+    CLAIM(!EqmSoupWrite(beside, NameInFolder("mesh.h5")));
+  }
+  code = EqmFormatOfSuffix(".xdmf")->read_parallel(PETSC_COMM_SELF, file, &soup);
+  CLAIM(code ? !soup : soup->num_cells > 0);
+  for (PetscInt k = 0; soup && k < soup->cell_size * soup->num_cells; ++k)
+    CLAIM(soup->cells[k] >= 0 && soup->cells[k] < soup->num_vertices);
   return EqmSoupDestroy(&soup);
 }
 #elif defined(EQM_FUZZ_DENSITY)
@@ -37,17 +53,11 @@ static PetscErrorCode Read(const char *file)
 }
 #endif
 
-/* The file is one in memory, under its name in /proc. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length)
 {
-  static int descriptor = -1;
-  static char name[64];
+  char name[1100];
 
-  if (descriptor < 0) {
-    descriptor = memfd_create("fuzz", 0);
-    snprintf(name, sizeof(name), "/proc/self/fd/%d", descriptor);
-  }
-  CLAIM(descriptor >= 0 && !ftruncate(descriptor, 0) && pwrite(descriptor, bytes, length, 0) == (ssize_t)length);
+  snprintf(name, sizeof(name), "%s", FileOfBytes("file", bytes, length));
   CLAIM(!Read(name));
   return 0;
 }

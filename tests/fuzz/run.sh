@@ -8,11 +8,14 @@ build=${2:-build-fuzz}
 [ $# -lt 2 ] && shift 1 || shift 2
 root=$(cd "$(dirname "$0")/../.." && pwd)
 cmake -S "$root" -B "$build" -DCMAKE_C_COMPILER="${CC:-clang-14}" -DEQUIMAP_FUZZ=ON -DEQUIMAP_TESTS=OFF -DEQUIMAP_PERF=OFF > /dev/null
-names=${*:-ply vtu gii vtk white msh mesh meshb off stl node obj points hdf5 density table}
+names=${*:-ply vtu gii vtk white msh mesh meshb off stl node obj points hdf5 xdmf density table options}
 targets=seeds
 for name in $names; do targets="$targets fuzz_$name"; done
 cmake --build "$build" -j "${JOBS:-2}" --target $targets >> /dev/null
-mkdir -p "$build/seeds" "$build/corpus" "$build/found"
+mkdir -p "$build/seeds" "$build/corpus" "$build/found" "$build/tmp"
+TMPDIR=$(cd "$build/tmp" && pwd)
+export TMPDIR
+trap 'rm -rf "$TMPDIR"' EXIT
 # MPI and libxml2 keep what they allocate once; readers' own memory is looked at by the unit tests
 export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 "$build/tests/fuzz/seeds" "$build/seeds"

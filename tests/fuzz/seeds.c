@@ -18,6 +18,32 @@ static void Save(const char *folder, const char *suffix, int number, const char 
   }
 }
 
+static void SaveTexts(const char *folder, const char *name, int count, const char *const text[])
+{
+  for (int i = 0; i < count; ++i) Save(folder, name, i, text[i], strlen(text[i]));
+}
+
+#define XDMF_ARRAY(dimensions, format, text)                                                                           \
+  "<DataItem DataType=\"Float\" Dimensions=\"" dimensions "\" Format=\"" format "\">" text "</DataItem>"
+#define XDMF_FILE(points, topology, cells, field)                                                                      \
+  "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"g\"><Geometry GeometryType=\"XYZ\">" points     \
+  "</Geometry><Topology TopologyType=\"" topology "\">" cells                                                          \
+  "</Topology><Attribute Name=\"w\" Center=\"Cell\">" field "</Attribute></Grid></Domain></Xdmf>"
+
+/* Arrays in the text, and those of the mesh that the target puts beside. */
+static const char *const xdmf[] = {XDMF_FILE(XDMF_ARRAY("4 3", "XML", "0 0 0 1 0 0 1 1 0 0 1 .5"), "Triangle",
+                                             XDMF_ARRAY("2 3", "XML", "0 1 2 0 2 3"),
+                                             XDMF_ARRAY("2", "XML", "0.5 2.5")),
+                                   XDMF_FILE(XDMF_ARRAY("4 3", "XML", "0 0 0 1 0 0 1 1 0 0 1 .5"), "Tetrahedron",
+                                             XDMF_ARRAY("4", "XML", "0 1 2 3"), XDMF_ARRAY("1 2", "XML", "0.5 2.5")),
+                                   XDMF_FILE(XDMF_ARRAY("12 3", "HDF", "mesh.h5:/mesh/vertices"), "Triangle",
+                                             XDMF_ARRAY("12 3", "HDF", "mesh.h5:/mesh/cells"),
+                                             XDMF_ARRAY("12", "HDF", "mesh.h5:/cell/density"))};
+static const char *const options[] = {"max_it: 100\nmethod: lm\nbalance: 1e-3\n",
+                                      "lm:\n  inner: 0\nfix: [1, 2]\n---\nquiet:\n",
+                                      "-max_it 100 -method lm\n# comment\n-fix_points 0,1,.5,0\n-quiet\n",
+                                      "-prefix_push lm_\n-inner 3\n-prefix_pop\n"};
+
 int main(int argc, char **argv)
 {
   static const char *const csv[] = {"a,b\n0,1\n2,3\n", "vertex;u;v\n1;.5;1e3\n0;0;0\n", "density\n1\n2\n",
@@ -30,11 +56,11 @@ int main(int argc, char **argv)
   if (argc != 2 || !samples) return 2;
   count = MakeSamples(samples);
   for (int i = 0; i < count; ++i) Save(argv[1], samples[i].suffix, i, samples[i].bytes, samples[i].length);
-  for (int i = 0; i < 4; ++i) {
-    Save(argv[1], "points", i, csv[i], strlen(csv[i]));
-    Save(argv[1], "density", i, csv[i], strlen(csv[i]));
-    Save(argv[1], "table", i, csv[i], strlen(csv[i]));
-  }
+  SaveTexts(argv[1], "points", 4, csv);
+  SaveTexts(argv[1], "density", 4, csv);
+  SaveTexts(argv[1], "table", 4, csv);
+  SaveTexts(argv[1], "xdmf", 3, xdmf);
+  SaveTexts(argv[1], "options", 4, options);
   Save(argv[1], "points", 4, npy, sizeof(npy) - 1);
   free(samples);
   return 0;
