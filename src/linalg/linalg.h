@@ -78,6 +78,8 @@ typedef struct {
   PetscReal bytes_on_rank;   /* on this rank at most at once: factor, fronts and work space, not the matrix itself */
   PetscReal most_bytes_on_rank, bytes; /* of the rank that needs most; of all */
   PetscInt largest_front;              /* substructuring: unknowns of the largest dense matrix */
+  PetscInt largest_front_on_one;       /* of the largest that one rank has alone */
+  PetscInt front_ranks;                /* ranks that share one, at most */
 } EqmEstimate;
 /* Bytes that this rank may use for factors. Option: -memory_limit. Collective. */
 PETSC_INTERN PetscErrorCode EqmMemoryLimit(MPI_Comm comm, PetscReal *bytes);
@@ -115,8 +117,10 @@ struct _p_EqmLinear {
   PetscErrorCode (*destroy)(EqmLinear);
 };
 
-/* List the options of linear solvers, with help: -linear_solver, -memory_limit. */
+/* List the options of linear solvers, with help: -linear_solver, -linear_shared_front, -memory_limit. */
 PETSC_INTERN PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject);
+/* Fronts of more unknowns are shared between ranks. Option: -linear_shared_front. Collective. Errors: EQM_ERR_USAGE. */
+PETSC_INTERN PetscErrorCode EqmLinearGetSharedFront(MPI_Comm comm, PetscInt *unknowns);
 /* Copy these options to an inner run, which has a database of its own. */
 PETSC_INTERN PetscErrorCode EqmLinearPassOptions(PetscOptions options);
 /* Until EqmOptionsPopDefaults, options that are not given have the values of `defaults` (pairs of name and value). The

@@ -2,7 +2,7 @@
 #include "linalg/linalg.h"
 #include "mesh/mesh_private.h"
 
-/* Larger fronts take half a gigabyte on one rank, and minutes that the other ranks wait. */
+/* Larger fronts on one rank take half a gigabyte, and minutes that the other ranks wait. */
 enum { MOST_FRONT = 8000 };
 /* Operations of a factor per unknown, beyond which one set-up of multigrid and the solves with it cost less; scalar
    Laplacians of solids come there at some hundred thousand vertices, those of surfaces never. */
@@ -102,7 +102,7 @@ static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal l
     PetscCall(Try(linear, ordering, direct[k]));
     PetscCall(FitsInMemory(linear, limit, &fits));
     costly = IsCostly(linear);
-    if (fits && !costly && linear->estimate.largest_front <= MOST_FRONT) PetscFunctionReturn(0);
+    if (fits && !costly && linear->estimate.largest_front_on_one <= MOST_FRONT) PetscFunctionReturn(0);
     PetscCall(Release(linear));
   }
   PetscCall(Try(linear, ordering, EQM_SOLVER_MULTIGRID));
@@ -169,7 +169,7 @@ PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnkn
 PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length)
 {
   const EqmEstimate *const e = &linear->estimate;
-  char between[64] = "";
+  char between[64] = "", shared[64] = "";
 
   PetscFunctionBegin;
   if (linear->kind == EQM_SOLVER_MULTIGRID || linear->kind == EQM_SOLVER_PETSC) {
@@ -179,11 +179,13 @@ PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length)
   }
   if (linear->kind == EQM_SOLVER_SUBSTRUCTURE)
     PetscCall(PetscSNPrintf(between, sizeof(between), ", largest front %" PetscInt_FMT, e->largest_front));
+  if (e->front_ranks > 1)
+    PetscCall(PetscSNPrintf(shared, sizeof(shared), " on %" PetscInt_FMT " ranks", e->front_ranks));
   PetscCall(PetscSNPrintf(text, length,
                           "%s (%" PetscInt_FMT
-                          " unknowns%s, factor of %.3g nonzeros, %.3g operations, at most %.3g GiB "
+                          " unknowns%s%s, factor of %.3g nonzeros, %.3g operations, at most %.3g GiB "
                           "per rank)",
-                          EqmSolverKinds[linear->kind], linear->num_unknowns, between, (double)e->nonzeros,
+                          EqmSolverKinds[linear->kind], linear->num_unknowns, between, shared, (double)e->nonzeros,
                           (double)e->flops, (double)(e->most_bytes_on_rank / gib)));
   PetscFunctionReturn(0);
 }

@@ -4,16 +4,34 @@
 const char *const EqmSolverKinds[] = {"auto",      "cholmod", "multifrontal",  "substructure", "mumps",
                                       "multigrid", "petsc",   "EqmSolverKind", "EQM_SOLVER_",  NULL};
 
+/* Smaller ones are done sooner on one rank. */
+enum { SHARED_FRONT = 4000 };
+
+PetscErrorCode EqmLinearGetSharedFront(MPI_Comm comm, PetscInt *unknowns)
+{
+  PetscFunctionBegin;
+  *unknowns = SHARED_FRONT;
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-linear_shared_front", unknowns, NULL));
+  if (*unknowns < 0)
+    EqmFail(comm, EQM_ERR_USAGE, "-linear_shared_front %" PetscInt_FMT ": give a number of unknowns, 0 or more",
+            *unknowns);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject)
 {
   PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
   PetscReal limit = 0.;
+  PetscInt shared_front = SHARED_FRONT;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsEnum("-linear_solver",
                              "what solves with matrices; multifrontal and cholmod are for one rank, substructure and "
                              "mumps for several; petsc: by -linear_ksp_type, -linear_pc_type, ...",
                              "EqmLinearCreate", EqmSolverKinds, kind, &kind, NULL));
+  PetscCall(PetscOptionsInt("-linear_shared_front",
+                            "dense fronts of more unknowns are shared between ranks, with substructure and ScaLAPACK",
+                            "EqmLinearCreate", shared_front, &shared_front, NULL));
   PetscCall(
       PetscOptionsReal("-memory_limit",
                        "at most so many GiB per rank for factors; beyond, -linear_solver auto iterates (0: most of "

@@ -167,7 +167,7 @@ static PetscErrorCode CreateInterface(EqmLinear linear, const EqmSeparation *sep
   EqmSubstructure *const s = linear->data;
   const PetscInt n = s->num_separator_unknowns;
   const PetscInt *eliminated = NULL;
-  PetscInt *position, *in_order, *unknown, *span, *vertex_of, count = 0;
+  PetscInt *position, *in_order, *unknown, *span, *vertex_of, count = 0, shared_front;
 
   PetscFunctionBegin;
   if (s->factor) PetscCall(EqmFrontalGetPositions(s->factor, &eliminated));
@@ -189,7 +189,8 @@ static PetscErrorCode CreateInterface(EqmLinear linear, const EqmSeparation *sep
     span[2 * k] = separation->span[2 * vertex_of[in_order[k]]];
     span[2 * k + 1] = separation->span[2 * vertex_of[in_order[k]] + 1];
   }
-  PetscCall(EqmInterfaceCreate(linear->mesh->comm, n, unknown, span, &s->interface));
+  PetscCall(EqmLinearGetSharedFront(linear->mesh->comm, &shared_front));
+  PetscCall(EqmInterfaceCreate(linear->mesh->comm, n, unknown, span, shared_front, &s->interface));
   PetscCall(PetscFree5(position, in_order, unknown, span, vertex_of));
   PetscFunctionReturn(0);
 }
@@ -213,7 +214,8 @@ PetscErrorCode EqmSubstructureAnalyse(EqmLinear linear, EqmOrdering ordering)
   EqmSubstructure *const s = linear->data;
   EqmEstimate *const e = &linear->estimate;
   const EqmSeparation *separation;
-  PetscReal local[2], sum[2], bytes, flops;
+  EqmInterfaceCost cost;
+  PetscReal local[2], sum[2];
 
   PetscFunctionBegin;
   PetscCall(EqmOrderingGetSeparation(ordering, &separation));
@@ -224,14 +226,17 @@ PetscErrorCode EqmSubstructureAnalyse(EqmLinear linear, EqmOrdering ordering)
   PetscCall(AnalyseInner(linear, separation));
   PetscCall(EqmSubstructureCheckMemory(linear, "analysis"));
   PetscCall(CreateInterface(linear, separation));
-  PetscCall(EqmInterfaceGetCost(s->interface, &e->largest_front, &bytes, &flops));
+  PetscCall(EqmInterfaceGetCost(s->interface, &cost));
+  e->largest_front = cost.largest;
+  e->largest_front_on_one = cost.largest_on_one;
+  e->front_ranks = cost.most_ranks;
   if (s->factor) PetscCall(EqmFrontalGetCost(s->factor, e));
   local[0] = e->nonzeros;
-  local[1] = e->flops + flops;
+  local[1] = e->flops + cost.flops;
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPIU_SUM, linear->mesh->comm));
   e->nonzeros = sum[0];
   e->flops = sum[1];
-  e->bytes_on_rank += bytes + (PetscReal)sizeof(PetscScalar) * PetscSqr((PetscReal)s->num_separator_unknowns);
+  e->bytes_on_rank += cost.bytes + (PetscReal)sizeof(PetscScalar) * PetscSqr((PetscReal)s->num_separator_unknowns);
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscFunctionReturn(0);
 }

@@ -263,6 +263,7 @@ static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, Eq
   PetscCall(EqmOrderingCreate(mesh, &ordering));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver auto"));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver substructure"));
+  PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver substructure -linear_shared_front 0"));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver mumps"));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver multigrid"));
   PetscCall(TestSolver(mesh, ordering, unknowns, use, "-linear_solver petsc"));

@@ -43,6 +43,7 @@ class Equimap(CMakePackage):
     depends_on("petsc~int64", when="~int64")
     depends_on("slepc@3.18:", when="+slepc")
     depends_on("mumps@5.4:+mpi+double")
+    depends_on("scalapack")
     depends_on("metis@5.1:")
     depends_on("suite-sparse@5:")
     depends_on("hdf5@1.10:+mpi")
