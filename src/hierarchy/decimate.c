@@ -4,57 +4,52 @@
 
 enum { MOST_PASSES = 12 };
 
-static PetscErrorCode Begin(EqmHierarchyLevel *level, EqmDecimation *d)
+PetscErrorCode EqmDecimationCreate(PetscInt n, PetscInt m, EqmDecimation *d)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(d, sizeof(*d)));
+  PetscCall(PetscMalloc2(3 * m, &d->cells, m, &d->weight));
+  PetscCall(PetscMalloc2(n + 2, &d->corners.start, 3 * m, &d->corners.corner));
+  PetscCall(PetscMalloc6(m, &d->dead, n, &d->gone, n, &d->place, n, &d->mark, n, &d->pass_kept, n, &d->next));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmDecimationDestroy(EqmDecimation *d)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree2(d->cells, d->weight));
+  PetscCall(PetscFree2(d->corners.start, d->corners.corner));
+  PetscCall(PetscFree6(d->dead, d->gone, d->place, d->mark, d->pass_kept, d->next));
+  PetscFunctionReturn(0);
+}
+
+void EqmDecimationBegin(EqmDecimation *d, EqmHierarchyLevel *level, const char *held)
 {
   const PetscInt n = level->num_vertices, m = level->num_cells;
 
-  PetscFunctionBegin;
-  PetscCall(PetscMemzero(d, sizeof(*d)));
   d->level = level;
+  d->held = held;
   d->num_left = n;
   d->num_boundary = level->num_boundary;
-  PetscCall(PetscMalloc2(3 * m, &d->cells, m, &d->weight));
-  PetscCall(PetscArraycpy(d->cells, level->cells, 3 * m));
-  PetscCall(PetscArraycpy(d->weight, level->weight, m));
-  PetscCall(EqmCornersCreate(n, m, d->cells, &d->corners));
-  PetscCall(PetscCalloc5(m, &d->dead, n, &d->gone, n, &d->place, n, &d->mark, n, &d->pass_kept));
-  PetscCall(PetscMalloc1(n, &d->next));
-  for (PetscInt v = 0; v < n; v++) d->next[v] = -1;
-  level->num_collapses = level->ring_length = 0;
-  d->most_collapses = n;
-  d->most_ring = 6 * n;
-  PetscCall(PetscMalloc1(d->most_collapses, &level->collapse));
-  PetscCall(PetscMalloc1(d->most_ring, &level->ring));
-  PetscCall(PetscMalloc1(d->most_ring, &level->ring_weight));
-  PetscFunctionReturn(0);
-}
-
-/* Shrink the arrays of records to their size. */
-static PetscErrorCode End(EqmDecimation *d)
-{
-  EqmHierarchyLevel *const level = d->level;
-
-  PetscFunctionBegin;
-  PetscCall(PetscRealloc(level->num_collapses * sizeof(*level->collapse), &level->collapse));
-  PetscCall(PetscRealloc(level->ring_length * sizeof(*level->ring), &level->ring));
-  PetscCall(PetscRealloc(level->ring_length * sizeof(*level->ring_weight), &level->ring_weight));
-  PetscCall(EqmCornersDestroy(&d->corners));
-  PetscCall(PetscFree2(d->cells, d->weight));
-  PetscCall(PetscFree5(d->dead, d->gone, d->place, d->mark, d->pass_kept));
-  PetscCall(PetscFree(d->next));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Record(EqmDecimation *d, const EqmStar *star, PetscInt onto)
-{
-  EqmHierarchyLevel *const level = d->level;
-
-  PetscFunctionBegin;
-  if (level->ring_length + star->size > d->most_ring) {
-    d->most_ring += d->most_ring / 2 + star->size;
-    PetscCall(PetscRealloc(d->most_ring * sizeof(*level->ring), &level->ring));
-    PetscCall(PetscRealloc(d->most_ring * sizeof(*level->ring_weight), &level->ring_weight));
+  d->stamp = 0;
+  for (PetscInt k = 0; k < 3 * m; k++) d->cells[k] = level->cells[k];
+  for (PetscInt c = 0; c < m; c++) {
+    d->weight[c] = level->weight[c];
+    d->dead[c] = 0;
   }
+  EqmCornersFill(n, m, d->cells, &d->corners);
+  for (PetscInt v = 0; v < n; v++) {
+    d->gone[v] = 0;
+    d->place[v] = d->mark[v] = d->pass_kept[v] = 0;
+    d->next[v] = -1;
+  }
+  level->num_collapses = level->ring_length = 0;
+}
+
+static void Record(EqmDecimation *d, const EqmStar *star, PetscInt onto)
+{
+  EqmHierarchyLevel *const level = d->level;
+
   level->collapse[level->num_collapses++] =
       (EqmCollapse){.vertex = star->vertex, .onto = onto, .start = level->ring_length, .size = star->size};
   for (PetscInt k = 0; k < star->size; k++) {
@@ -62,7 +57,6 @@ static PetscErrorCode Record(EqmDecimation *d, const EqmStar *star, PetscInt ont
     level->ring_weight[level->ring_length + k] = k < star->num_cells ? d->weight[star->cell[k]] : 0.;
   }
   level->ring_length += star->size;
-  PetscFunctionReturn(0);
 }
 
 /* The whole weight of the star is distributed to the triangles that replace it, by their areas, a positive part to
@@ -89,13 +83,12 @@ static void DistributeWeight(EqmDecimation *d, const EqmStar *star, PetscInt ont
   }
 }
 
-static PetscErrorCode Collapse(EqmDecimation *d, const EqmStar *star, PetscInt target, PetscInt pass)
+static void Collapse(EqmDecimation *d, const EqmStar *star, PetscInt target, PetscInt pass)
 {
   const PetscInt u = star->ring[target], v = star->vertex;
   PetscInt last = v;
 
-  PetscFunctionBegin;
-  PetscCall(Record(d, star, u));
+  Record(d, star, u);
   for (PetscInt k = 0; k < star->num_cells; k++) {
     PetscInt *const corner = d->cells + 3 * star->cell[k];
     if (star->ring[k] == u || star->ring[(k + 1) % star->size] == u) d->dead[star->cell[k]] = 1;
@@ -109,27 +102,54 @@ static PetscErrorCode Collapse(EqmDecimation *d, const EqmStar *star, PetscInt t
   d->num_left--;
   d->num_boundary -= !star->closed;
   for (PetscInt k = 0; k < star->size; k++) d->pass_kept[star->ring[k]] = pass;
-  PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Pass(EqmDecimation *d, PetscInt pass, PetscInt goal, PetscInt least_boundary, PetscReal quality,
-                           PetscInt *removed)
+/* Where all weight goes to the triangle across the ring's one edge, that must not be another's to change. */
+static PetscBool AcrossIsHeld(const EqmDecimation *d, const EqmStar *star)
+{
+  return (PetscBool)(d->held && star->size == 2 && (d->held[star->ring[0]] || d->held[star->ring[1]]));
+}
+
+/* Returns how many vertices went. */
+static PetscInt Pass(EqmDecimation *d, PetscInt pass, PetscInt goal, PetscInt least_boundary, PetscReal quality)
 {
   const EqmHierarchyLevel *const level = d->level;
+  PetscInt removed = 0;
   EqmStar star;
 
-  PetscFunctionBegin;
-  *removed = 0;
   for (PetscInt v = 0; v < level->num_vertices && d->num_left > goal; v++) {
     PetscInt target;
-    if (d->gone[v] || d->pass_kept[v] == pass || level->part[v] == EQM_CORNER) continue;
+    if (d->gone[v] || d->pass_kept[v] == pass || level->part[v] == EQM_CORNER || (d->held && d->held[v])) continue;
     if (level->part[v] == EQM_ON_BOUNDARY && d->num_boundary <= least_boundary) continue;
     if (!EqmDecimationStar(d, v, &star) || star.closed != (level->part[v] == EQM_INSIDE)) continue;
+    if (AcrossIsHeld(d, &star)) continue;
     target = EqmChooseCollapse(d, &star, quality);
     if (target < 0) continue;
-    PetscCall(Collapse(d, &star, target, pass));
-    (*removed)++;
+    Collapse(d, &star, target, pass);
+    removed++;
   }
+  return removed;
+}
+
+void EqmDecimationRun(EqmDecimation *d, PetscInt goal, PetscInt least_boundary, PetscReal *quality)
+{
+  PetscInt n = d->num_left;
+  const PetscReal few = .04, no_more = 1e-5; /* below that quality any triangle will do */
+
+  for (PetscInt v = 0; v < d->level->num_vertices && d->held; v++) n -= d->held[v];
+  for (PetscInt pass = 1; pass <= MOST_PASSES && d->num_left > goal; pass++) {
+    const PetscInt removed = Pass(d, pass, goal, least_boundary, *quality);
+    if (removed == 0 && *quality < 0.) break;
+    if (removed <= few * n) *quality = *quality < no_more ? -1. : .5 * *quality;
+  }
+}
+
+PetscErrorCode EqmLevelShrinkRecords(EqmHierarchyLevel *level)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscRealloc(level->num_collapses * sizeof(*level->collapse), &level->collapse));
+  PetscCall(PetscRealloc(level->ring_length * sizeof(*level->ring), &level->ring));
+  PetscCall(PetscRealloc(level->ring_length * sizeof(*level->ring_weight), &level->ring_weight));
   PetscFunctionReturn(0);
 }
 
@@ -169,19 +189,18 @@ static PetscErrorCode MakeCoarser(const EqmDecimation *d, EqmHierarchyLevel *coa
 PetscErrorCode EqmDecimate(EqmHierarchyLevel *finer, PetscReal ratio, PetscInt least_boundary, PetscReal *quality,
                            EqmHierarchyLevel *coarser)
 {
-  const PetscInt goal = PetscMax((PetscInt)(finer->num_vertices / ratio), 4);
-  const PetscReal few = .04, no_more = 1e-5; /* below that quality any triangle will do */
+  const PetscInt goal = PetscMax((PetscInt)(finer->num_vertices / ratio), 4), most = finer->num_vertices - goal;
   EqmDecimation d;
 
   PetscFunctionBegin;
-  PetscCall(Begin(finer, &d));
-  for (PetscInt pass = 1; pass <= MOST_PASSES && d.num_left > goal; pass++) {
-    PetscInt removed;
-    PetscCall(Pass(&d, pass, goal, least_boundary, *quality, &removed));
-    if (removed == 0 && *quality < 0.) break;
-    if (removed <= few * finer->num_vertices) *quality = *quality < no_more ? -1. : .5 * *quality;
-  }
+  PetscCall(PetscMalloc1(PetscMax(most, 0), &finer->collapse));
+  PetscCall(PetscMalloc1(EQM_MOST_RECORD * PetscMax(most, 0), &finer->ring));
+  PetscCall(PetscMalloc1(EQM_MOST_RECORD * PetscMax(most, 0), &finer->ring_weight));
+  PetscCall(EqmDecimationCreate(finer->num_vertices, finer->num_cells, &d));
+  EqmDecimationBegin(&d, finer, NULL);
+  EqmDecimationRun(&d, goal, least_boundary, quality);
   PetscCall(MakeCoarser(&d, coarser));
-  PetscCall(End(&d));
+  PetscCall(EqmDecimationDestroy(&d));
+  PetscCall(EqmLevelShrinkRecords(finer));
   PetscFunctionReturn(0);
 }

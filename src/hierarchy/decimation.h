@@ -17,7 +17,7 @@ typedef struct {
 } EqmStar;
 
 typedef struct {
-  EqmHierarchyLevel *level;
+  EqmHierarchyLevel *level; /* gets the records, for which it must have room */
   PetscInt *cells;
   PetscReal *weight;
   char *dead;         /* per cell */
@@ -27,8 +27,18 @@ typedef struct {
   PetscInt *mark, stamp;
   PetscInt *pass_kept; /* per vertex: the last pass in which one of its neighbours went */
   char *gone;
-  PetscInt num_left, num_boundary, most_collapses, most_ring;
+  const char *held; /* per vertex: stays, as triangles around it or its neighbours lack; NULL: none */
+  PetscInt num_left, num_boundary;
 } EqmDecimation;
+
+/* Room for levels of so many vertices and cells, one after the other. Not collective. */
+PETSC_INTERN PetscErrorCode EqmDecimationCreate(PetscInt most_vertices, PetscInt most_cells, EqmDecimation *d);
+PETSC_INTERN PetscErrorCode EqmDecimationDestroy(EqmDecimation *d);
+/* Begin with a level, then collapse edges until no more than `goal` vertices are left or none may go: the level's
+   records have room for the difference, and EQM_MOST_RECORD ring vertices each. `quality`: as for EqmDecimate. Not
+   collective; they call nothing of PETSc's, so that threads may each have their own. */
+PETSC_INTERN void EqmDecimationBegin(EqmDecimation *d, EqmHierarchyLevel *level, const char *held);
+PETSC_INTERN void EqmDecimationRun(EqmDecimation *d, PetscInt goal, PetscInt least_boundary, PetscReal *quality);
 
 /* The star of a vertex; false where it is too large or no fan. Not collective. */
 PETSC_INTERN PetscBool EqmDecimationStar(EqmDecimation *d, PetscInt vertex, EqmStar *star);

@@ -8,20 +8,23 @@
 PetscErrorCode EqmHierarchyOptionsDefault(EqmHierarchyOptions *options)
 {
   PetscFunctionBegin;
-  *options = (EqmHierarchyOptions){.ratio = 2.5, .coarsest = 4, .boundary_share = 1.5, .corner = NULL};
+  *options = (EqmHierarchyOptions){.ratio = 2.5,
+                                   .coarsest = 4,
+                                   .boundary_share = 1.5,
+                                   .corner = NULL,
+                                   .gathered = 100000,
+                                   .vertices_of_piece = 16384};
   PetscFunctionReturn(0);
 }
 
-/* A circle cut at b places leaves segments of (2 pi / b)^3 / 12; half a triangle is pi / (2 m). */
-static PetscInt LeastBoundary(PetscInt num_cells, PetscReal share)
+PetscInt EqmHierarchyLeastBoundary(PetscInt num_cells, PetscReal share)
 {
   return (PetscInt)(share * 2. * PETSC_PI / PetscPowReal(12. * PETSC_PI / num_cells, 1. / 3.));
 }
 
-static PetscErrorCode MakeLevels(EqmHierarchy hierarchy, const EqmHierarchyOptions *options)
+static PetscErrorCode MakeLevels(EqmHierarchy hierarchy, const EqmHierarchyOptions *options, PetscInt least_boundary)
 {
   EqmHierarchyLevel *const level = hierarchy->level;
-  const PetscInt least_boundary = LeastBoundary(level[0].num_cells, options->boundary_share);
   const PetscReal no_progress = .95;
   PetscReal quality = .3;
 
@@ -37,10 +40,22 @@ static PetscErrorCode MakeLevels(EqmHierarchy hierarchy, const EqmHierarchyOptio
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmHierarchyCreate(EqmMesh mesh, const EqmHierarchyOptions *options, EqmHierarchy *out)
+PetscErrorCode EqmHierarchyMakeLevels(EqmHierarchy hierarchy, const EqmHierarchyOptions *options,
+                                      PetscInt least_boundary)
 {
   char message[EQM_MESSAGE_MAX] = "";
   PetscErrorCode code = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message)); /* the other ranks wait for this one */
+  if (hierarchy->rank == 0) code = MakeLevels(hierarchy, options, least_boundary);
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(EqmAgree(hierarchy->comm, code, message));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmHierarchyCreate(EqmMesh mesh, const EqmHierarchyOptions *options, EqmHierarchy *out)
+{
   EqmHierarchy hierarchy;
 
   PetscFunctionBegin;
@@ -50,11 +65,23 @@ PetscErrorCode EqmHierarchyCreate(EqmMesh mesh, const EqmHierarchyOptions *optio
   hierarchy->rank = mesh->rank;
   hierarchy->num_owned = mesh->num_owned;
   PetscCall(EqmGatherFinest(mesh, options->corner, hierarchy));
-  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message)); /* the other ranks wait for this one */
-  if (mesh->rank == 0) code = MakeLevels(hierarchy, options);
-  PetscCall(PetscPopErrorHandler());
-  PetscCall(EqmAgree(mesh->comm, code, message));
+  PetscCall(
+      EqmHierarchyMakeLevels(hierarchy, options, EqmHierarchyLeastBoundary(mesh->num_cells, options->boundary_share)));
   *out = hierarchy;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLevelReset(EqmHierarchyLevel *level)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(level->cells));
+  PetscCall(PetscFree(level->weight));
+  PetscCall(PetscFree(level->position));
+  PetscCall(PetscFree(level->part));
+  PetscCall(PetscFree(level->finer));
+  PetscCall(PetscFree(level->collapse));
+  PetscCall(PetscFree(level->ring));
+  PetscCall(PetscFree(level->ring_weight));
   PetscFunctionReturn(0);
 }
 
@@ -62,17 +89,7 @@ PetscErrorCode EqmHierarchyDestroy(EqmHierarchy *hierarchy)
 {
   PetscFunctionBegin;
   if (!*hierarchy) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < EQM_MOST_LEVELS; k++) {
-    EqmHierarchyLevel *const level = &(*hierarchy)->level[k];
-    PetscCall(PetscFree(level->cells));
-    PetscCall(PetscFree(level->weight));
-    PetscCall(PetscFree(level->position));
-    PetscCall(PetscFree(level->part));
-    PetscCall(PetscFree(level->finer));
-    PetscCall(PetscFree(level->collapse));
-    PetscCall(PetscFree(level->ring));
-    PetscCall(PetscFree(level->ring_weight));
-  }
+  for (PetscInt k = 0; k < EQM_MOST_LEVELS; k++) PetscCall(EqmLevelReset(&(*hierarchy)->level[k]));
   PetscCall(PetscFree((*hierarchy)->order));
   PetscCall(PetscFree(*hierarchy));
   PetscFunctionReturn(0);

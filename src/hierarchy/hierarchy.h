@@ -50,11 +50,13 @@ struct _p_EqmHierarchy {
 };
 
 typedef struct {
-  PetscReal ratio;          /* vertices of a level to those of the next coarser one */
-  PetscInt coarsest;        /* no level is made below a level with so few vertices; four is the least */
-  PetscReal boundary_share; /* boundary vertices are kept so many that the piece between chord and arc of the unit
-                               circle is below half a triangle of the surface, times this factor */
-  const PetscBool *corner;  /* per local vertex: must stay; NULL: none */
+  PetscReal ratio;            /* vertices of a level to those of the next coarser one */
+  PetscInt coarsest;          /* no level is made below a level with so few vertices; four is the least */
+  PetscReal boundary_share;   /* boundary vertices are kept so many that the piece between chord and arc of the unit
+                                 circle is below half a triangle of the surface, times this factor */
+  const PetscBool *corner;    /* per local vertex: must stay; NULL: none */
+  PetscInt gathered;          /* shared levels (hierarchy/shared.h): one with no more vertices goes to the first rank */
+  PetscInt vertices_of_piece; /* and their pieces have about so many */
 } EqmHierarchyOptions;
 
 PETSC_INTERN PetscErrorCode EqmHierarchyOptionsDefault(EqmHierarchyOptions *options);

@@ -12,6 +12,8 @@ typedef struct {
 PETSC_INTERN PetscErrorCode EqmCornersCreate(PetscInt num_vertices, PetscInt num_cells, const PetscInt *cells,
                                              EqmCorners *corners);
 PETSC_INTERN PetscErrorCode EqmCornersDestroy(EqmCorners *corners);
+/* The same into arrays that are there, num_vertices + 2 and 3 num_cells long. Not collective. */
+PETSC_INTERN void EqmCornersFill(PetscInt num_vertices, PetscInt num_cells, const PetscInt *cells, EqmCorners *corners);
 
 /* A triangle of a star without its centre: from one vertex of the ring to the next. */
 typedef struct {
@@ -36,6 +38,8 @@ typedef struct {
 enum { EQM_BETWEEN_PIECES = -1 };
 PETSC_INTERN PetscErrorCode EqmLevelPiecesCreate(PetscInt num_vertices, PetscInt num, const int *piece,
                                                  EqmLevelPieces *pieces);
+/* The same for `count` pieces of any kind. Not collective. */
+PETSC_INTERN PetscErrorCode EqmLevelPiecesSort(PetscInt count, PetscInt num, const int *piece, EqmLevelPieces *pieces);
 PETSC_INTERN PetscErrorCode EqmLevelPiecesDestroy(EqmLevelPieces *pieces);
 
 /* 4 sqrt(3) area / (sum of squared edges) and twice the area's vector. */
@@ -55,5 +59,15 @@ static inline PetscReal EqmTriangleQuality(const PetscReal *p, const PetscReal *
    collective. */
 PETSC_INTERN PetscErrorCode EqmDecimate(EqmHierarchyLevel *finer, PetscReal ratio, PetscInt least_boundary,
                                         PetscReal *quality, EqmHierarchyLevel *coarser);
+/* How many boundary vertices stay on all levels of a surface of so many cells: a circle cut at b places leaves segments
+   of (2 pi / b)^3 / 12, half a triangle is pi / (2 m). Not collective. */
+PETSC_INTERN PetscInt EqmHierarchyLeastBoundary(PetscInt num_cells, PetscReal share);
+/* Make the coarser levels of level 0, on the first rank. Collective. */
+PETSC_INTERN PetscErrorCode EqmHierarchyMakeLevels(EqmHierarchy hierarchy, const EqmHierarchyOptions *options,
+                                                   PetscInt least_boundary);
+/* Give back what the records have of room beyond their number. Not collective. */
+PETSC_INTERN PetscErrorCode EqmLevelShrinkRecords(EqmHierarchyLevel *level);
+/* Free its arrays. Not collective. */
+PETSC_INTERN PetscErrorCode EqmLevelReset(EqmHierarchyLevel *level);
 
 #endif

@@ -85,12 +85,7 @@ static PetscReal CellDirichlet(const EqmLevelMap *map, const PetscReal *x, Petsc
 /* Sums are taken piece by piece and then over the pieces, in one order for any number of threads. */
 enum { CELLS_OF_PIECE = 8192 };
 
-typedef struct {
-  PetscReal total, energy, residual, angle;
-  PetscInt folds;
-} PieceSums;
-
-static PetscReal PieceArea(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end)
+PetscReal EqmLevelMapArea(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end)
 {
   const PetscInt dim = map->dim;
   PetscReal total = 0.;
@@ -102,8 +97,7 @@ static PetscReal PieceArea(const EqmLevelMap *map, const PetscReal *x, PetscInt 
   return total;
 }
 
-/* The other sums, once `map->total` is known. */
-static void SumPiece(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end, PieceSums *sums)
+void EqmLevelMapSum(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end, EqmLevelSums *sums)
 {
   const EqmHierarchyLevel *const level = map->level;
   const PetscInt dim = map->dim;
@@ -122,29 +116,39 @@ static void SumPiece(const EqmLevelMap *map, const PetscReal *x, PetscInt begin,
   }
 }
 
+void EqmLevelMapValue(const EqmLevelMap *map, const EqmLevelSums *sums, EqmLevelValue *value)
+{
+  const PetscInt folds = (PetscInt)sums->folds;
+
+  *value = (EqmLevelValue){.objective = folds > 0 ? PETSC_INFINITY : sums->residual + EqmAngleFactor(map) * sums->angle,
+                           .residual = sums->residual,
+                           .energy = sums->energy,
+                           .folds = folds};
+}
+
 PetscErrorCode EqmLevelMapEvaluate(EqmLevelMap *map, const PetscReal *x, EqmLevelValue *value)
 {
   const PetscInt n = map->level->num_cells, cells = CELLS_OF_PIECE, num_pieces = (n + cells - 1) / cells;
-  PieceSums *piece, all = {.total = 0.};
+  PetscReal *area, total = 0.;
+  EqmLevelSums *piece, all = {.folds = 0.};
 
   PetscFunctionBegin;
+  PetscCall(PetscMalloc1(num_pieces, &area));
   PetscCall(PetscCalloc1(num_pieces, &piece));
 #pragma omp parallel for schedule(dynamic) if (num_pieces > 1)
-  for (PetscInt k = 0; k < num_pieces; k++) piece[k].total = PieceArea(map, x, k * cells, PetscMin((k + 1) * cells, n));
-  for (PetscInt k = 0; k < num_pieces; k++) all.total += piece[k].total;
-  map->total = all.total;
+  for (PetscInt k = 0; k < num_pieces; k++) area[k] = EqmLevelMapArea(map, x, k * cells, PetscMin((k + 1) * cells, n));
+  for (PetscInt k = 0; k < num_pieces; k++) total += area[k];
+  map->total = total;
 #pragma omp parallel for schedule(dynamic) if (num_pieces > 1)
-  for (PetscInt k = 0; k < num_pieces; k++) SumPiece(map, x, k * cells, PetscMin((k + 1) * cells, n), &piece[k]);
+  for (PetscInt k = 0; k < num_pieces; k++) EqmLevelMapSum(map, x, k * cells, PetscMin((k + 1) * cells, n), &piece[k]);
   for (PetscInt k = 0; k < num_pieces; k++) {
     all.folds += piece[k].folds;
     all.energy += piece[k].energy;
     all.residual += piece[k].residual;
     all.angle += piece[k].angle;
   }
+  PetscCall(PetscFree(area));
   PetscCall(PetscFree(piece));
-  *value = (EqmLevelValue){.objective = all.folds > 0 ? PETSC_INFINITY : all.residual + EqmAngleFactor(map) * all.angle,
-                           .residual = all.residual,
-                           .energy = all.energy,
-                           .folds = all.folds};
+  EqmLevelMapValue(map, &all, value);
   PetscFunctionReturn(0);
 }

@@ -44,6 +44,15 @@ PETSC_INTERN PetscErrorCode EqmLevelMapSetMotions(EqmLevelMap *map, EqmCascadeTa
 PETSC_INTERN PetscErrorCode EqmLevelMapRestrict(const EqmLevelMap *finer, EqmLevelMap *coarser);
 /* Evaluate the objective at x instead of the map's own coordinates; sets `map->total`. Not collective. */
 PETSC_INTERN PetscErrorCode EqmLevelMapEvaluate(EqmLevelMap *map, const PetscReal *x, EqmLevelValue *value);
+/* Its parts, over the cells begin .. end - 1: their area, then, once that of all is map->total, the sums that the value
+   is made of. Not collective. */
+typedef struct {
+  PetscReal folds, energy, residual, angle;
+} EqmLevelSums;
+PETSC_INTERN PetscReal EqmLevelMapArea(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end);
+PETSC_INTERN void EqmLevelMapSum(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end,
+                                 EqmLevelSums *sums);
+PETSC_INTERN void EqmLevelMapValue(const EqmLevelMap *map, const EqmLevelSums *sums, EqmLevelValue *value);
 /* Half cotangents of a cell's angles on the surface, with slivers changed so that its Laplacian is bounded: positive
    semidefinite for any triangle. Not collective. */
 PETSC_INTERN void EqmHalfCotangents(const EqmHierarchyLevel *level, PetscInt cell, PetscReal half[3]);

@@ -143,15 +143,20 @@ static PetscBool PutBack(const EqmHierarchyLevel *level, const EqmCollapse *reco
   return PETSC_TRUE;
 }
 
+PetscInt EqmReinsertRecords(PetscInt begin, PetscInt end, EqmLevelMap *map)
+{
+  PetscInt hard = 0;
+
+  for (PetscInt k = end; k-- > begin;) PutBack(map->level, &map->level->collapse[k], map, &hard);
+  return hard;
+}
+
 PetscErrorCode EqmReinsert(const EqmLevelMap *from, EqmLevelMap *to, PetscInt *hard)
 {
-  const EqmHierarchyLevel *const level = to->level;
-
   PetscFunctionBegin;
-  *hard = 0;
   to->total = from->total;
   for (PetscInt v = 0; v < from->level->num_vertices; v++)
     PetscCall(PetscArraycpy(to->x + to->dim * from->level->finer[v], from->x + to->dim * v, to->dim));
-  for (PetscInt k = level->num_collapses; k-- > 0;) PutBack(level, &level->collapse[k], to, hard);
+  *hard = EqmReinsertRecords(0, to->level->num_collapses, to);
   PetscFunctionReturn(0);
 }

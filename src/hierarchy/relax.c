@@ -176,23 +176,26 @@ static PetscErrorCode MakePieces(const EqmHierarchyLevel *level, EqmLevelStars *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmLevelStarsCreate(const EqmHierarchyLevel *level, EqmLevelStars *stars)
+PetscErrorCode EqmLevelStarsFill(const EqmHierarchyLevel *level, PetscInt num, EqmLevelStars *stars)
 {
-  const PetscInt length = 3 * level->num_cells + level->num_boundary;
   EqmCorners corners;
   EqmSpoke *spoke, *scratch;
-  PetscInt *place, most = 0;
+  PetscInt *place, length = 0, most = 0;
 
   PetscFunctionBegin;
+  *stars = (EqmLevelStars){.most = 0};
   PetscCall(EqmCornersCreate(level->num_vertices, level->num_cells, level->cells, &corners));
-  for (PetscInt v = 0; v < level->num_vertices; v++) most = PetscMax(most, corners.start[v + 1] - corners.start[v]);
+  for (PetscInt v = 0; v < num; v++) {
+    most = PetscMax(most, corners.start[v + 1] - corners.start[v]);
+    length += corners.start[v + 1] - corners.start[v] + (level->part[v] != EQM_INSIDE);
+  }
   PetscCall(PetscMalloc2(most, &spoke, most, &scratch));
   PetscCall(PetscCalloc1(level->num_vertices, &place));
-  PetscCall(PetscMalloc4(level->num_vertices + 1, &stars->start, length, &stars->ring, length, &stars->weight, length,
-                         &stars->cotangent));
+  PetscCall(
+      PetscMalloc4(num + 1, &stars->start, length, &stars->ring, length, &stars->weight, length, &stars->cotangent));
   stars->most = most + 1;
   stars->start[0] = 0;
-  for (PetscInt v = 0; v < level->num_vertices; v++) {
+  for (PetscInt v = 0; v < num; v++) {
     const PetscInt at = stars->start[v];
     PetscInt count;
     PetscBool closed;
@@ -200,10 +203,17 @@ PetscErrorCode EqmLevelStarsCreate(const EqmHierarchyLevel *level, EqmLevelStars
     FillStar(level, v, count, closed, spoke, stars->ring + at, stars->weight + at, stars->cotangent + at);
     stars->start[v + 1] = at + count + !closed;
   }
-  PetscCall(MakePieces(level, stars));
   PetscCall(PetscFree(place));
   PetscCall(PetscFree2(spoke, scratch));
   PetscCall(EqmCornersDestroy(&corners));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLevelStarsCreate(const EqmHierarchyLevel *level, EqmLevelStars *stars)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLevelStarsFill(level, level->num_vertices, stars));
+  PetscCall(MakePieces(level, stars));
   PetscFunctionReturn(0);
 }
 
@@ -232,16 +242,22 @@ static void RelaxVertex(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt v
   EqmStarImageRelax(star, (EqmMotion)map->motion[v], 1, map->x + dim * v);
 }
 
-/* The vertices of a piece, forwards or backwards; `ring` is scratch. */
+void EqmRelaxVertices(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt num, const PetscInt *vertex,
+                      PetscBool backwards, PetscReal (*ring)[3])
+{
+  EqmStarImage star = {.dim = map->dim, .total = map->total, .balance = EqmAngleFactor(map), .ring = ring};
+
+  for (PetscInt k = 0; k < num; k++) RelaxVertex(map, stars, vertex[backwards ? num - 1 - k : k], &star);
+}
+
+/* Those of a piece. */
 static void RelaxPiece(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt piece, PetscBool backwards,
                        PetscReal (*ring)[3])
 {
   const EqmLevelPieces *const pieces = &stars->vertices;
-  const PetscInt begin = pieces->start[piece], count = pieces->start[piece + 1] - begin;
-  EqmStarImage star = {.dim = map->dim, .total = map->total, .balance = EqmAngleFactor(map), .ring = ring};
+  const PetscInt begin = pieces->start[piece];
 
-  for (PetscInt k = 0; k < count; k++)
-    RelaxVertex(map, stars, pieces->item[begin + (backwards ? count - 1 - k : k)], &star);
+  EqmRelaxVertices(map, stars, pieces->start[piece + 1] - begin, pieces->item + begin, backwards, ring);
 }
 
 PetscErrorCode EqmRelaxLevel(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt sweeps)

@@ -26,9 +26,15 @@ typedef struct {
   EqmLevelPieces vertices; /* those of different pieces are no neighbours */
 } EqmLevelStars;
 PETSC_INTERN PetscErrorCode EqmLevelStarsCreate(const EqmHierarchyLevel *level, EqmLevelStars *stars);
+/* The stars of the first `num` vertices, without pieces. Not collective. */
+PETSC_INTERN PetscErrorCode EqmLevelStarsFill(const EqmHierarchyLevel *level, PetscInt num, EqmLevelStars *stars);
 PETSC_INTERN PetscErrorCode EqmLevelStarsDestroy(EqmLevelStars *stars);
 /* Relax each vertex once, in the order within pieces and then back, in turn: `sweeps` in all. Never two neighbours at
    the same time, which might fold. Not collective. */
 PETSC_INTERN PetscErrorCode EqmRelaxLevel(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt sweeps);
+/* The vertices first, first + 1, ... of a list, once, or the other way round; `ring` is scratch for stars->most places.
+   Not collective. */
+PETSC_INTERN void EqmRelaxVertices(EqmLevelMap *map, const EqmLevelStars *stars, PetscInt num, const PetscInt *vertex,
+                                   PetscBool backwards, PetscReal (*ring)[3]);
 
 #endif

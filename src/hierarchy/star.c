@@ -1,18 +1,22 @@
 /* Triangles around vertices, in order. */
 #include "hierarchy/level.h"
 
-PetscErrorCode EqmCornersCreate(PetscInt num_vertices, PetscInt num_cells, const PetscInt *cells, EqmCorners *corners)
+void EqmCornersFill(PetscInt num_vertices, PetscInt num_cells, const PetscInt *cells, EqmCorners *corners)
 {
-  PetscInt *start, *corner;
+  PetscInt *const start = corners->start;
 
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc1(num_vertices + 2, &start));
-  PetscCall(PetscMalloc1(3 * num_cells, &corner));
+  for (PetscInt v = 0; v < num_vertices + 2; v++) start[v] = 0;
   for (PetscInt k = 0; k < 3 * num_cells; k++) start[cells[k] + 2]++;
   for (PetscInt v = 0; v < num_vertices; v++) start[v + 2] += start[v + 1];
-  for (PetscInt k = 0; k < 3 * num_cells; k++) corner[start[cells[k] + 1]++] = k;
-  corners->start = start;
-  corners->corner = corner;
+  for (PetscInt k = 0; k < 3 * num_cells; k++) corners->corner[start[cells[k] + 1]++] = k;
+}
+
+PetscErrorCode EqmCornersCreate(PetscInt num_vertices, PetscInt num_cells, const PetscInt *cells, EqmCorners *corners)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(num_vertices + 2, &corners->start));
+  PetscCall(PetscMalloc1(3 * num_cells, &corners->corner));
+  EqmCornersFill(num_vertices, num_cells, cells, corners);
   PetscFunctionReturn(0);
 }
 

@@ -48,10 +48,8 @@ static PetscErrorCode Relax(Cascade *cascade, EqmProblem problem, EqmIterate ite
 
   PetscFunctionBegin;
   cascade->options.epsilon_finest = cascade->epsilon;
-  PetscCall(EqmLevelsGather(levels, &iterate->place));
-  PetscCall(EqmCascadeRelax(levels->hierarchy, levels->target, &cascade->options, levels->x, &result));
   PetscCall(EqmPlaceCreate(problem->domain, &trial));
-  PetscCall(EqmLevelsScatter(levels, &trial));
+  PetscCall(EqmLevelsRelax(levels, &cascade->options, &iterate->place, &trial, &result));
   PetscCall(EqmPlaceMakeFrames(problem->domain, &trial));
   PetscCall(EqmImageFolds(problem->domain, &trial, iterate->image, &folds));
   PetscCall(EqmDomainBoundaryInOrder(problem->domain, &trial, better));

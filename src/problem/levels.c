@@ -14,8 +14,6 @@ static EqmCascadeTarget TargetOf(EqmDomain domain)
 const char *EqmLevelsObstacle(EqmProblem problem)
 {
   if (problem->domain->motion[1] == &EqmMotionHeldOnCircle) return "moves the boundary, which is held";
-  if (problem->mesh->size > 1 && problem->mesh->num_vertices > most_gathered)
-    return "works on one rank: not from several for more than a million vertices";
   return NULL;
 }
 
@@ -27,15 +25,16 @@ PetscErrorCode EqmLevelsCreate(EqmProblem problem, EqmLevels *levels)
   PetscBool *corner;
 
   PetscFunctionBegin;
-  levels->problem = problem;
-  levels->target = TargetOf(domain);
-  PetscCall(PetscMalloc1(mesh->rank == 0 ? domain->dim * mesh->num_vertices : 0, &levels->x));
+  *levels = (EqmLevels){.problem = problem, .target = TargetOf(domain)};
   PetscCall(PetscMalloc1(mesh->num_local, &corner));
   for (PetscInt v = 0; v < mesh->num_local; v++)
     corner[v] = (PetscBool)(EqmDomainMotion(domain, v) == &EqmMotionCorner);
   PetscCall(EqmHierarchyOptionsDefault(&options));
   options.corner = corner;
-  PetscCall(EqmHierarchyCreate(mesh, &options, &levels->hierarchy));
+  if (mesh->size > 1 && mesh->num_vertices > most_gathered)
+    PetscCall(EqmSharedCreate(mesh, &options, &levels->shared));
+  else
+    PetscCall(EqmHierarchyCreate(mesh, &options, &levels->hierarchy));
   PetscCall(PetscFree(corner));
   PetscFunctionReturn(0);
 }
@@ -43,24 +42,51 @@ PetscErrorCode EqmLevelsCreate(EqmProblem problem, EqmLevels *levels)
 PetscErrorCode EqmLevelsDestroy(EqmLevels *levels)
 {
   PetscFunctionBegin;
-  if (levels->hierarchy) PetscCall(EqmHierarchyDestroy(&levels->hierarchy));
-  PetscCall(PetscFree(levels->x));
+  PetscCall(EqmHierarchyDestroy(&levels->hierarchy));
+  PetscCall(EqmSharedDestroy(&levels->shared));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmLevelsGather(EqmLevels *levels, const EqmPlace *place)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmHierarchyGather(levels->hierarchy, levels->problem->domain->dim, place->x, levels->x));
-  PetscFunctionReturn(0);
-}
+typedef PetscErrorCode (*OnFirstRank)(EqmHierarchy, EqmCascadeTarget, const EqmCascadeOptions *, PetscReal *,
+                                      EqmCascadeResult *);
+typedef PetscErrorCode (*OnAllRanks)(EqmShared, EqmCascadeTarget, const EqmCascadeOptions *, PetscReal *,
+                                     EqmCascadeResult *);
 
-PetscErrorCode EqmLevelsScatter(EqmLevels *levels, EqmPlace *place)
+/* Collective. */
+static PetscErrorCode Work(EqmLevels *levels, OnFirstRank first, OnAllRanks all, const EqmCascadeOptions *options,
+                           EqmPlace *place, EqmCascadeResult *result)
 {
+  const EqmHierarchy hierarchy = levels->hierarchy;
   const PetscInt dim = levels->problem->domain->dim;
+  PetscReal *x;
 
   PetscFunctionBegin;
-  PetscCall(EqmHierarchyScatter(levels->hierarchy, dim, levels->x, place->x));
+  if (levels->shared) {
+    PetscCall(all(levels->shared, levels->target, options, place->x, result));
+  } else {
+    PetscCall(PetscMalloc1(dim * hierarchy->level[0].num_vertices, &x));
+    PetscCall(EqmHierarchyGather(hierarchy, dim, place->x, x));
+    PetscCall(first(hierarchy, levels->target, options, x, result));
+    PetscCall(EqmHierarchyScatter(hierarchy, dim, x, place->x));
+    PetscCall(PetscFree(x));
+  }
   PetscCall(EqmMeshUpdateGhosts(levels->problem->mesh, dim, place->x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLevelsCascade(EqmLevels *levels, const EqmCascadeOptions *options, EqmPlace *place,
+                                EqmCascadeResult *result)
+{
+  PetscFunctionBegin;
+  PetscCall(Work(levels, EqmCascade, EqmSharedCascade, options, place, result));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLevelsRelax(EqmLevels *levels, const EqmCascadeOptions *options, const EqmPlace *from, EqmPlace *to,
+                              EqmCascadeResult *result)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(to->x, from->x, levels->problem->domain->dim * levels->problem->mesh->num_local));
+  PetscCall(Work(levels, EqmCascadeRelax, EqmSharedCascadeRelax, options, to, result));
   PetscFunctionReturn(0);
 }

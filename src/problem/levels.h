@@ -1,15 +1,17 @@
-/* A problem's mesh as a hierarchy of coarser ones (src/hierarchy), and maps on their way to it and back. */
+/* A problem's mesh as a hierarchy of coarser ones (src/hierarchy), and cascades on it. */
 #ifndef EQM_LEVELS_H
 #define EQM_LEVELS_H
 
-#include "hierarchy/cascade.h"
+#include "hierarchy/sharedcascade.h"
 #include "problem/problem.h"
 
+/* On one rank, and from several for what one can hold, the hierarchy is on the first; else all ranks share its finest
+   levels. */
 typedef struct {
   EqmProblem problem;
-  EqmHierarchy hierarchy;
   EqmCascadeTarget target;
-  PetscReal *x; /* on the first rank: the places of the finest level's vertices */
+  EqmHierarchy hierarchy; /* or NULL */
+  EqmShared shared;       /* or NULL */
 } EqmLevels;
 
 /* Why there can be none for this problem, as the end of a sentence about "it"; NULL: there can. Not collective. */
@@ -17,8 +19,12 @@ PETSC_INTERN const char *EqmLevelsObstacle(EqmProblem problem);
 /* Corners of the square stay on all levels. Collective. */
 PETSC_INTERN PetscErrorCode EqmLevelsCreate(EqmProblem problem, EqmLevels *levels);
 PETSC_INTERN PetscErrorCode EqmLevelsDestroy(EqmLevels *levels);
-/* From the place to x, and back, ghosts included; frames are not chosen anew. Collective. */
-PETSC_INTERN PetscErrorCode EqmLevelsGather(EqmLevels *levels, const EqmPlace *place);
-PETSC_INTERN PetscErrorCode EqmLevelsScatter(EqmLevels *levels, EqmPlace *place);
+/* EqmCascade on them: boundary vertices of the place, which is set, ghosts included, are set on entry; frames are not
+   chosen anew. Collective. */
+PETSC_INTERN PetscErrorCode EqmLevelsCascade(EqmLevels *levels, const EqmCascadeOptions *options, EqmPlace *place,
+                                             EqmCascadeResult *result);
+/* EqmCascadeRelax on them, from one place to another. Collective. */
+PETSC_INTERN PetscErrorCode EqmLevelsRelax(EqmLevels *levels, const EqmCascadeOptions *options, const EqmPlace *from,
+                                           EqmPlace *to, EqmCascadeResult *result);
 
 #endif

@@ -1,5 +1,5 @@
 /* First maps by a cascade of ever finer meshes (src/hierarchy): smooth, without folds, at a cost that grows with the
-   number of vertices. The hierarchy is on one rank. */
+   number of vertices. */
 #include "start/start.h"
 #include "domain/domain_private.h"
 #include "problem/levels.h"
@@ -13,9 +13,7 @@ static PetscErrorCode Cascade(EqmProblem problem, EqmIterate iterate, EqmCascade
   PetscCall(EqmDomainPlaceBoundary(problem->domain, &iterate->place));
   PetscCall(EqmCascadeOptionsDefault(&options));
   PetscCall(EqmLevelsCreate(problem, &levels));
-  PetscCall(EqmLevelsGather(&levels, &iterate->place));
-  PetscCall(EqmCascade(levels.hierarchy, levels.target, &options, levels.x, result));
-  PetscCall(EqmLevelsScatter(&levels, &iterate->place));
+  PetscCall(EqmLevelsCascade(&levels, &options, &iterate->place, result));
   PetscCall(EqmLevelsDestroy(&levels));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,125 @@
+/* The cascade on shared levels. */
+#include "hierarchy/sharedcascade.h"
+#include "hierarchy/sharedmap.h"
+#include "base/rows.h"
+#include <math.h>
+
+/* A map of a level whose places come from the finer one, or from the mesh, along `from_finer`. Collective. */
+static PetscErrorCode CreateMap(const EqmSharedLevel *shared, EqmCascadeTarget target, const PetscReal *finer,
+                                EqmLevelMap *map)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLevelMapCreate(&shared->level, target, map));
+  PetscCall(EqmRowsToLeaves(shared->from_finer, map->dim, finer, map->x));
+  PetscCall(EqmSharedUpdateGhosts(shared, map->dim, map->x));
+  PetscCall(EqmLevelMapSetMotions(map, target));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Show(const EqmSharedLevel *shared, EqmLevelMap *map, const char *what, PetscInt count,
+                           const EqmCascadeOptions *options)
+{
+  EqmLevelValue value;
+
+  PetscFunctionBegin;
+  if (!options->trace) PetscFunctionReturn(0);
+  PetscCall(EqmSharedEvaluate(shared, map, map->x, &value));
+  PetscCall(PetscPrintf(shared->comm,
+                        "  %8" PetscInt_FMT " vertices, %-12s %5" PetscInt_FMT
+                        ": energy %.3e, objective %.3e, folds %" PetscInt_FMT "\n",
+                        shared->num_vertices, what, count, (double)value.energy, (double)value.objective, value.folds));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RelaxLevel(const EqmSharedLevel *shared, EqmLevelMap *map, const EqmCascadeOptions *options)
+{
+  EqmSharedStars stars;
+  EqmLevelValue value;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSharedStarsCreate(shared, &stars));
+  for (PetscInt s = 0; s < options->sweeps; s += 2) {
+    PetscCall(EqmSharedEvaluate(shared, map, map->x, &value)); /* for its total */
+    PetscCall(EqmSharedRelax(shared, map, &stars, PetscMin(2, options->sweeps - s)));
+  }
+  PetscCall(EqmSharedStarsDestroy(&stars));
+  PetscCall(Show(shared, map, "sweeps", options->sweeps, options));
+  PetscFunctionReturn(0);
+}
+
+/* The coarsest shared level, which is the finest of the first rank's own. Collective. */
+static PetscErrorCode MapCoarsest(EqmShared shared, EqmLevelMap *map, EqmCascadeTarget target,
+                                  const EqmCascadeOptions *options)
+{
+  const EqmSharedLevel *const last = &shared->level[shared->num_levels - 1];
+  EqmCascadeOptions below = *options;
+  EqmCascadeResult result;
+  PetscReal *x;
+
+  PetscFunctionBegin;
+  if (shared->num_levels > 1) below.epsilon_finest = options->epsilon;
+  PetscCall(PetscMalloc1(map->dim * shared->coarser->level[0].num_vertices, &x));
+  PetscCall(EqmHierarchyGather(shared->coarser, map->dim, map->x, x));
+  PetscCall(EqmCascade(shared->coarser, target, &below, x, &result));
+  PetscCall(EqmHierarchyScatter(shared->coarser, map->dim, x, map->x));
+  PetscCall(PetscFree(x));
+  PetscCall(EqmSharedUpdateGhosts(last, map->dim, map->x));
+  map->epsilon = below.epsilon_finest;
+  PetscCall(Show(last, map, "coarsest", 0, options));
+  PetscFunctionReturn(0);
+}
+
+/* The finest level's map goes to x. */
+static PetscErrorCode TakeFinest(EqmShared shared, EqmLevelMap *map, PetscReal *x, EqmCascadeResult *result)
+{
+  EqmLevelValue value;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSharedEvaluate(&shared->level[0], map, map->x, &value));
+  result->folds = value.folds;
+  result->energy = value.energy;
+  result->objective = value.objective;
+  PetscCall(EqmRowsToRoots(shared->level[0].from_finer, map->dim, map->x, x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSharedCascade(EqmShared shared, EqmCascadeTarget target, const EqmCascadeOptions *options,
+                                PetscReal *x, EqmCascadeResult *result)
+{
+  const PetscInt last = shared->num_levels - 1;
+  EqmLevelMap map[EQM_MOST_LEVELS];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k <= last; k++)
+    PetscCall(CreateMap(&shared->level[k], target, k > 0 ? map[k - 1].x : x, &map[k]));
+  PetscCall(MapCoarsest(shared, &map[last], target, options));
+  for (PetscInt k = last - 1; k >= 0; k--) {
+    PetscInt hard;
+    PetscCall(EqmSharedReinsert(&shared->level[k + 1], &map[k + 1], &shared->level[k], &map[k], &hard));
+    PetscCall(EqmLevelMapDestroy(&map[k + 1]));
+    map[k].epsilon = k == 0 ? options->epsilon_finest : options->epsilon;
+    PetscCall(Show(&shared->level[k], &map[k], "reinserted", hard, options));
+    PetscCall(RelaxLevel(&shared->level[k], &map[k], options));
+  }
+  result->before = INFINITY;
+  PetscCall(TakeFinest(shared, &map[0], x, result));
+  PetscCall(EqmLevelMapDestroy(&map[0]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSharedCascadeRelax(EqmShared shared, EqmCascadeTarget target, const EqmCascadeOptions *options,
+                                     PetscReal *x, EqmCascadeResult *result)
+{
+  EqmLevelMap map;
+  EqmLevelValue value;
+
+  PetscFunctionBegin;
+  PetscCall(CreateMap(&shared->level[0], target, x, &map));
+  map.epsilon = options->epsilon_finest;
+  PetscCall(EqmSharedEvaluate(&shared->level[0], &map, map.x, &value));
+  result->before = value.objective;
+  if (value.folds == 0) PetscCall(RelaxLevel(&shared->level[0], &map, options));
+  PetscCall(TakeFinest(shared, &map, x, result));
+  PetscCall(EqmLevelMapDestroy(&map));
+  PetscFunctionReturn(0);
+}
