@@ -213,24 +213,37 @@ PetscErrorCode EqmDomainCurvature(EqmDomain domain, const EqmPlace *place, const
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place, PetscBool *in_order)
+void EqmDomainSumBoundary(EqmDomain domain, const EqmPlace *place, PetscReal sum[EQM_BOUNDARY_SUMS])
 {
   const EqmMesh mesh = domain->mesh;
-  PetscReal local[2] = {0., 1.}; /* total length along the boundary, whether all steps are forward */
 
-  PetscFunctionBegin;
-  *in_order = PETSC_TRUE;
-  if (domain->boundary_length == 0.) PetscFunctionReturn(0);
+  sum[0] = sum[1] = 0.;
+  if (domain->boundary_length == 0.) return;
   for (PetscInt e = 0; e < mesh->num_boundary_facets; e++) {
     const PetscInt i = mesh->boundary_facets[2 * e], j = mesh->boundary_facets[2 * e + 1];
     if (i >= mesh->num_owned) continue;
     const PetscReal advance = EqmDomainMotion(domain, i)->advance(place->x + 2 * i, place->x + 2 * j);
-    local[0] += advance;
-    if (!(advance > 0.)) local[1] = 0.;
+    sum[0] += advance;
+    sum[1] += !(advance > 0.);
   }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &local[0], 1, MPIU_REAL, MPIU_SUM, mesh->comm));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &local[1], 1, MPIU_REAL, MPIU_MIN, mesh->comm));
-  *in_order = (PetscBool)(local[1] > 0. && PetscAbsReal(local[0] - domain->boundary_length) < .5);
+}
+
+PetscBool EqmDomainIsInOrder(EqmDomain domain, const PetscReal sum[EQM_BOUNDARY_SUMS])
+{
+  if (domain->boundary_length == 0.) return PETSC_TRUE;
+  return (PetscBool)(sum[1] == 0. && PetscAbsReal(sum[0] - domain->boundary_length) < .5);
+}
+
+PetscErrorCode EqmDomainBoundaryInOrder(EqmDomain domain, const EqmPlace *place, PetscBool *in_order)
+{
+  PetscReal sum[EQM_BOUNDARY_SUMS];
+
+  PetscFunctionBegin;
+  *in_order = PETSC_TRUE;
+  if (domain->boundary_length == 0.) PetscFunctionReturn(0);
+  EqmDomainSumBoundary(domain, place, sum);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, EQM_BOUNDARY_SUMS, MPIU_REAL, MPIU_SUM, domain->mesh->comm));
+  *in_order = EqmDomainIsInOrder(domain, sum);
   PetscFunctionReturn(0);
 }
 

@@ -52,4 +52,11 @@ PETSC_INTERN PetscErrorCode EqmDomainReadHeldDisk(EqmMesh mesh, const EqmDomainO
 /* Boundary vertices to the angles 2 pi arc_length of the unit circle (disk.c). Collective. */
 PETSC_INTERN PetscErrorCode EqmDomainPlaceOnCircle(EqmDomain domain, EqmPlace *place);
 
+/* This rank's share of the sums that EqmDomainBoundaryInOrder judges by, for callers with a reduction of their own: the
+   length along the boundary, the number of steps that are not forward. Not collective. */
+enum { EQM_BOUNDARY_SUMS = 2 };
+PETSC_INTERN void EqmDomainSumBoundary(EqmDomain domain, const EqmPlace *place, PetscReal sum[EQM_BOUNDARY_SUMS]);
+/* From the sums over all ranks. Not collective. */
+PETSC_INTERN PetscBool EqmDomainIsInOrder(EqmDomain domain, const PetscReal sum[EQM_BOUNDARY_SUMS]);
+
 #endif

@@ -26,4 +26,14 @@ PETSC_INTERN void EqmDenseForward(const PetscScalar *l, PetscInt rows, PetscInt 
 PETSC_INTERN void EqmDenseBackward(const PetscScalar *l, PetscInt rows, PetscInt columns, PetscInt count,
                                    PetscScalar *x);
 
+/* The same with a factor whose numbers are kept in single precision, half the memory to read; vectors and arithmetic
+   are double, so that forward and backward substitution are still each other's transpose to the last digits. */
+PETSC_INTERN void EqmDenseForwardSingle(const float *l, PetscInt rows, PetscInt columns, PetscInt count,
+                                        PetscScalar *x);
+PETSC_INTERN void EqmDenseBackwardSingle(const float *l, PetscInt rows, PetscInt columns, PetscInt count,
+                                         PetscScalar *x);
+/* Round the lower trapezoid of `l` to single precision; what is above its diagonal is not written. False if a number
+   is beyond the range of single precision, or the diagonal below. */
+PETSC_INTERN PetscBool EqmDenseNarrow(const PetscScalar *l, PetscInt rows, PetscInt columns, float *narrow);
+
 #endif

@@ -1,5 +1,6 @@
 /* Dense kernels of factorisations. */
 #include "linalg/dense_vectors.h"
+#include <float.h>
 
 /* c[i, q] (-)= sum of a[i, p] a[j + q, p] over p < depth, for `many` columns q and the rows i = begin .. end - 1. */
 EQM_INLINE void Subtract(const int many, const int replace, const double *a, PetscInt stride, PetscInt depth,
@@ -7,7 +8,7 @@ EQM_INLINE void Subtract(const int many, const int replace, const double *a, Pet
 {
   PetscInt i = begin;
 
-#define STEP(Type)                                                                                                     \
+#define STEP(Type, Single, LOAD)                                                                                       \
   do {                                                                                                                 \
     Type sum[GROUP];                                                                                                   \
     const double *column = a;                                                                                          \
@@ -189,4 +190,19 @@ EQM_CLONES void EqmDenseUpdate(const PetscScalar *b, PetscInt stride, PetscInt r
   for (PetscInt j = begin; j < end; j += MOST_COPIED)
     SubtractColumns(1, b, stride, depth, j, PetscMin(j + MOST_COPIED, end), j, rows, update + (size_t)j * (size_t)rows,
                     rows);
+}
+
+EQM_CLONES PetscBool EqmDenseNarrow(const PetscScalar *l, PetscInt rows, PetscInt columns, float *narrow)
+{
+  int bad = 0;
+
+  for (PetscInt j = 0; j < columns; j++) {
+    const size_t diagonal = (size_t)j * (size_t)(rows + 1), end = (size_t)(j + 1) * (size_t)rows;
+    for (size_t i = diagonal; i < end; i++) {
+      narrow[i] = (float)l[i];
+      bad |= !(PetscAbsReal(l[i]) <= FLT_MAX);
+    }
+    bad |= !(l[diagonal] >= FLT_MIN);
+  }
+  return (PetscBool)!bad;
 }

@@ -1,19 +1,20 @@
-/* Dense kernels of solves. */
+/* Dense kernels of solves, with matrices in either precision. */
 #include "linalg/dense_vectors.h"
 
 /* x -= L y for a group of columns of L, `count` columns of x. */
-EQM_INLINE void ForwardRows(const int many, const int count, const double *l, PetscInt stride, PetscInt begin,
-                            PetscInt end, double (*y)[EQM_MOST_COLUMNS], double *x)
+EQM_INLINE void ForwardRows(const int many, const int count, const int is_single, const void *l, PetscInt stride,
+                            PetscInt begin, PetscInt end, double (*y)[EQM_MOST_COLUMNS], double *x)
 {
   PetscInt i = begin;
 
-#define STEP(Type)                                                                                                     \
+#define STEP(Type, Single, LOAD)                                                                                       \
   do {                                                                                                                 \
     Type sum[EQM_MOST_COLUMNS];                                                                                        \
-    for (int q = 0; q < many; q++) __builtin_prefetch(l + (size_t)(q + 2 * GROUP) * (size_t)stride + i);               \
-    for (int c = 0; c < count; c++) sum[c] = *(const Type *)(l + i) * y[0][c];                                         \
+    for (int q = 0; q < many; q++) __builtin_prefetch(Shift(l, is_single, (PetscInt64)(q + 2 * GROUP) * stride + i));  \
+    for (int c = 0; c < count; c++) sum[c] = LOAD(Type, Single, l, is_single, (size_t)i) * y[0][c];                    \
     for (int q = 1; q < many; q++) {                                                                                   \
-      for (int c = 0; c < count; c++) sum[c] += *(const Type *)(l + (size_t)q * (size_t)stride + i) * y[q][c];         \
+      const Type value = LOAD(Type, Single, l, is_single, (size_t)q * (size_t)stride + (size_t)i);                     \
+      for (int c = 0; c < count; c++) sum[c] += value * y[q][c];                                                       \
     }                                                                                                                  \
     for (int c = 0; c < count; c++) *(Type *)(x + (size_t)c * (size_t)stride + i) -= sum[c];                           \
   } while (0)
@@ -21,31 +22,32 @@ EQM_INLINE void ForwardRows(const int many, const int count, const double *l, Pe
 #undef STEP
 }
 
-EQM_INLINE void Forward(const int count, const double *l, PetscInt rows, PetscInt columns, double *x)
+EQM_INLINE void Forward(const int count, const int is_single, const void *l, PetscInt rows, PetscInt columns, double *x)
 {
   for (PetscInt j = 0; j < columns; j += GROUP) {
     const PetscInt many = PetscMin(GROUP, columns - j);
-    const double *const group = l + (size_t)j * (size_t)rows, *const triangle = group + j;
+    const void *const group = Shift(l, is_single, (PetscInt64)j * rows), *const triangle = Shift(group, is_single, j);
     double y[GROUP][EQM_MOST_COLUMNS];
     for (PetscInt q = 0; q < many; q++) {
       for (int c = 0; c < count; c++) {
         double value = x[(size_t)c * (size_t)rows + j + q];
-        for (PetscInt p = 0; p < q; p++) value -= triangle[(size_t)p * (size_t)rows + q] * y[p][c];
-        x[(size_t)c * (size_t)rows + j + q] = y[q][c] = value / triangle[(size_t)q * (size_t)(rows + 1)];
+        for (PetscInt p = 0; p < q; p++) value -= Number(triangle, is_single, (size_t)p * (size_t)rows + q) * y[p][c];
+        x[(size_t)c * (size_t)rows + j + q] = y[q][c] =
+            value / Number(triangle, is_single, (size_t)q * (size_t)(rows + 1));
       }
     }
     if (many == GROUP) {
-      ForwardRows(GROUP, count, group, rows, j + GROUP, rows, y, x);
+      ForwardRows(GROUP, count, is_single, group, rows, j + GROUP, rows, y, x);
     } else {
       for (PetscInt q = 0; q < many; q++)
-        ForwardRows(1, count, group + (size_t)q * (size_t)rows, rows, j + many, rows, y + q, x);
+        ForwardRows(1, count, is_single, Shift(group, is_single, (PetscInt64)q * rows), rows, j + many, rows, y + q, x);
     }
   }
 }
 
 /* sum[q][c] = column q of L times column c of x, rows begin .. end - 1: four partial sums, then the rest. */
-EQM_INLINE void DotRows(const int many, const int count, const double *l, PetscInt stride, PetscInt begin, PetscInt end,
-                        const double *x, double (*sum)[EQM_MOST_COLUMNS])
+EQM_INLINE void DotRows(const int many, const int count, const int is_single, const void *l, PetscInt stride,
+                        PetscInt begin, PetscInt end, const double *x, double (*sum)[EQM_MOST_COLUMNS])
 {
   Vector4 partial[GROUP][EQM_MOST_COLUMNS];
   PetscInt i = begin;
@@ -55,8 +57,8 @@ EQM_INLINE void DotRows(const int many, const int count, const double *l, PetscI
   }
   for (; i + 4 <= end; i += 4) {
     for (int q = 0; q < many; q++) {
-      __builtin_prefetch(l - (size_t)(2 * GROUP - q) * (size_t)stride + i);
-      const Vector4 value = *(const Vector4 *)(l + (size_t)q * (size_t)stride + i);
+      __builtin_prefetch(Shift(l, is_single, i - (PetscInt64)(2 * GROUP - q) * stride));
+      const Vector4 value = LOAD_VECTOR(Vector4, Single4, l, is_single, (size_t)q * (size_t)stride + (size_t)i);
       for (int c = 0; c < count; c++) partial[q][c] += value * *(const Vector4 *)(x + (size_t)c * (size_t)stride + i);
     }
   }
@@ -65,63 +67,69 @@ EQM_INLINE void DotRows(const int many, const int count, const double *l, PetscI
       const Vector4 *const p = &partial[q][c];
       sum[q][c] = ((*p)[0] + (*p)[1]) + ((*p)[2] + (*p)[3]);
       for (PetscInt k = i; k < end; k++)
-        sum[q][c] += l[(size_t)q * (size_t)stride + k] * x[(size_t)c * (size_t)stride + k];
+        sum[q][c] += Number(l, is_single, (size_t)q * (size_t)stride + (size_t)k) * x[(size_t)c * (size_t)stride + k];
     }
   }
 }
 
-EQM_INLINE void Backward(const int count, const double *l, PetscInt rows, PetscInt columns, double *x)
+EQM_INLINE void Backward(const int count, const int is_single, const void *l, PetscInt rows, PetscInt columns,
+                         double *x)
 {
   for (PetscInt j = (columns - 1) / GROUP * GROUP; j >= 0; j -= GROUP) {
     const PetscInt many = PetscMin(GROUP, columns - j);
-    const double *const group = l + (size_t)j * (size_t)rows, *const triangle = group + j;
+    const void *const group = Shift(l, is_single, (PetscInt64)j * rows), *const triangle = Shift(group, is_single, j);
     double sum[GROUP][EQM_MOST_COLUMNS];
     if (many == GROUP) {
-      DotRows(GROUP, count, group, rows, j + GROUP, rows, x, sum);
+      DotRows(GROUP, count, is_single, group, rows, j + GROUP, rows, x, sum);
     } else {
       for (PetscInt q = 0; q < many; q++)
-        DotRows(1, count, group + (size_t)q * (size_t)rows, rows, j + many, rows, x, sum + q);
+        DotRows(1, count, is_single, Shift(group, is_single, (PetscInt64)q * rows), rows, j + many, rows, x, sum + q);
     }
     for (PetscInt q = many - 1; q >= 0; q--) {
       for (int c = 0; c < count; c++) {
         double *const column = x + (size_t)c * (size_t)rows + j, value = column[q] - sum[q][c];
-        for (PetscInt p = q + 1; p < many; p++) value -= triangle[(size_t)q * (size_t)rows + p] * column[p];
-        column[q] = value / triangle[(size_t)q * (size_t)(rows + 1)];
+        for (PetscInt p = q + 1; p < many; p++)
+          value -= Number(triangle, is_single, (size_t)q * (size_t)rows + p) * column[p];
+        column[q] = value / Number(triangle, is_single, (size_t)q * (size_t)(rows + 1));
       }
     }
   }
 }
 
+/* The kernel with its constants known to the compiler. */
+#define WITH_COUNT(Kernel, is_single)                                                                                  \
+  do {                                                                                                                 \
+    switch (count) {                                                                                                   \
+    case 4:                                                                                                            \
+      Kernel(4, is_single, l, rows, columns, x);                                                                       \
+      break;                                                                                                           \
+    case 3:                                                                                                            \
+      Kernel(3, is_single, l, rows, columns, x);                                                                       \
+      break;                                                                                                           \
+    case 2:                                                                                                            \
+      Kernel(2, is_single, l, rows, columns, x);                                                                       \
+      break;                                                                                                           \
+    default:                                                                                                           \
+      Kernel(1, is_single, l, rows, columns, x);                                                                       \
+    }                                                                                                                  \
+  } while (0)
+
 EQM_CLONES void EqmDenseForward(const PetscScalar *l, PetscInt rows, PetscInt columns, PetscInt count, PetscScalar *x)
 {
-  switch (count) {
-  case 4:
-    Forward(4, l, rows, columns, x);
-    break;
-  case 3:
-    Forward(3, l, rows, columns, x);
-    break;
-  case 2:
-    Forward(2, l, rows, columns, x);
-    break;
-  default:
-    Forward(1, l, rows, columns, x);
-  }
+  WITH_COUNT(Forward, 0);
 }
 
 EQM_CLONES void EqmDenseBackward(const PetscScalar *l, PetscInt rows, PetscInt columns, PetscInt count, PetscScalar *x)
 {
-  switch (count) {
-  case 4:
-    Backward(4, l, rows, columns, x);
-    break;
-  case 3:
-    Backward(3, l, rows, columns, x);
-    break;
-  case 2:
-    Backward(2, l, rows, columns, x);
-    break;
-  default:
-    Backward(1, l, rows, columns, x);
-  }
+  WITH_COUNT(Backward, 0);
+}
+
+EQM_CLONES void EqmDenseForwardSingle(const float *l, PetscInt rows, PetscInt columns, PetscInt count, PetscScalar *x)
+{
+  WITH_COUNT(Forward, 1);
+}
+
+EQM_CLONES void EqmDenseBackwardSingle(const float *l, PetscInt rows, PetscInt columns, PetscInt count, PetscScalar *x)
+{
+  WITH_COUNT(Backward, 1);
 }

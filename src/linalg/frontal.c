@@ -124,6 +124,7 @@ static PetscErrorCode MeasureBranch(EqmFrontal f, PetscInt end)
       now -= of_child * of_child;
     }
     f->most_rows[end] = PetscMax(f->most_rows[end], EqmFrontRows(f, k));
+    f->most_panel[end] = PetscMax(f->most_panel[end], EqmFrontPanel(f, k));
     if (EqmFrontRest(f, end) > 0) PetscCall(FindRows(f, k, end, EqmFrontColumns(f, end), f->at_end));
   }
   PetscFunctionReturn(0);
@@ -138,11 +139,13 @@ static PetscErrorCode MakePlaces(EqmFrontal f)
   PetscFunctionBegin;
   PetscCall(
       PetscMalloc4(f->row_start[n], &f->at_parent, f->row_start[n], &f->at_end, n, &f->is_branch, n, &f->is_inside));
-  PetscCall(PetscCalloc4(n, &f->stack, n, &f->most_rows, n + 1, &f->passed_start, n, &f->update));
+  PetscCall(PetscCalloc6(n, &f->stack, n, &f->most_rows, n, &f->most_panel, n + 1, &f->passed_start, n, &f->panel, n,
+                         &f->update));
   PetscCall(CutBranches(f));
   for (PetscInt k = 0; k < n; k++) {
     if (f->parent[k] >= 0) PetscCall(FindRows(f, k, f->parent[k], 0, f->at_parent));
     f->most_rows[k] = EqmFrontRows(f, k);
+    f->most_panel[k] = EqmFrontPanel(f, k);
     if (f->is_branch[k]) PetscCall(MeasureBranch(f, k));
     f->passed_start[k] = count;
     if (f->is_branch[k] || !f->is_inside[k]) count += EqmFrontRest(f, k);
@@ -151,7 +154,7 @@ static PetscErrorCode MakePlaces(EqmFrontal f)
   PetscFunctionReturn(0);
 }
 
-/* To which front and value each entry of the matrix goes. */
+/* To which front and which of its numbers each entry of the matrix goes. */
 static PetscErrorCode PlaceEntries(EqmFrontal f, const cholmod_sparse *pattern)
 {
   const PetscInt *const start = pattern->p, *const index = pattern->i, n = f->num_fronts;
@@ -173,7 +176,7 @@ static PetscErrorCode PlaceEntries(EqmFrontal f, const cholmod_sparse *pattern)
       if (at >= EqmFrontColumns(f, k)) PetscCall(PetscFindInt(row, rows, f->row + f->row_start[k], &at));
       PetscCheck(at >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "an entry is in no supernode");
       front[q] = k;
-      target[q] = f->value_start[k] + (column - f->column[k]) * rows + at;
+      target[q] = (column - f->column[k]) * rows + at;
       f->entry_start[k + 2]++;
     }
   }
@@ -215,11 +218,27 @@ PetscErrorCode EqmFrontalDestroy(EqmFrontal *out)
   PetscCall(PetscFree(f->position));
   PetscCall(PetscFree4(f->parent, f->child_start, f->child, f->first_below));
   PetscCall(PetscFree4(f->at_parent, f->at_end, f->is_branch, f->is_inside));
-  PetscCall(PetscFree4(f->stack, f->most_rows, f->passed_start, f->update));
+  PetscCall(PetscFree6(f->stack, f->most_rows, f->most_panel, f->passed_start, f->panel, f->update));
   PetscCall(PetscFree3(f->entry_start, f->entry_source, f->entry_target));
   free(f->value);
   PetscCall(PetscFree2(f->columns, f->passed));
   PetscCall(PetscFree(*out));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmFrontalKeepSingle(EqmFrontal f)
+{
+  PetscFunctionBegin;
+  f->is_single = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmFrontalKeepBlock(EqmFrontal f, PetscInt n, const PetscInt *at, PetscScalar *block)
+{
+  PetscFunctionBegin;
+  f->num_kept = n;
+  f->kept_at = at;
+  f->kept_block = block;
   PetscFunctionReturn(0);
 }
 
@@ -237,21 +256,23 @@ PetscErrorCode EqmFrontalGetPositions(EqmFrontal f, const PetscInt **position)
 
 PetscErrorCode EqmFrontalGetCost(EqmFrontal f, EqmEstimate *estimate)
 {
-  PetscReal numbers = (PetscReal)f->symbolic->xsize + VECTORS * (PetscReal)f->num_unknowns, updates = 0., most = 0.;
+  const PetscReal size = f->is_single ? sizeof(float) : sizeof(PetscScalar);
+  PetscReal updates = 0., most = 0.;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < f->num_fronts; k++) {
     const PetscReal rest = EqmFrontRest(f, k);
     /* at most those that no front has taken yet */
     updates += rest * rest * (f->is_branch[k] || !f->is_inside[k]) + (PetscReal)f->stack[k];
-    most = PetscMax(most, updates);
+    most = PetscMax(most, updates + (f->is_single ? (PetscReal)f->most_panel[k] : 0.));
     for (PetscInt c = f->child_start[k]; c < f->child_start[k + 1] && !f->is_inside[k]; c++)
       updates -= PetscSqr((PetscReal)EqmFrontRest(f, f->child[c])) + (PetscReal)f->stack[f->child[c]];
   }
   estimate->nonzeros += f->common.lnz;
   estimate->flops += f->common.fl;
   estimate->bytes_on_rank +=
-      (PetscReal)sizeof(PetscScalar) * (numbers + most) +
+      size * (PetscReal)f->symbolic->xsize +
+      (PetscReal)sizeof(PetscScalar) * (VECTORS * (PetscReal)f->num_unknowns + most) +
       (PetscReal)sizeof(PetscInt) * (3. * f->row_start[f->num_fronts] + 2. * f->num_entries + f->num_unknowns);
   PetscFunctionReturn(0);
 }

@@ -23,10 +23,10 @@ static PetscBool HasFailed(EqmFrontal f)
   return (PetscBool)(not_definite || no_memory);
 }
 
-/* Allocate n x n numbers; records a failure. */
-static PetscScalar *Allocate(EqmFrontal f, size_t n)
+/* Allocate n numbers of `size` bytes; records a failure. */
+static void *Allocate(EqmFrontal f, size_t n, size_t size)
 {
-  PetscScalar *const room = malloc(PetscMax(n, 1) * sizeof(PetscScalar));
+  void *const room = malloc(PetscMax(n, 1) * size);
 
   if (!room) Note(&f->no_memory);
   return room;
@@ -37,7 +37,6 @@ static void TakeColumns(EqmFrontal f, PetscInt k, PetscInt child, PetscInt begin
 {
   const PetscInt rest = EqmFrontRest(f, child), rows = EqmFrontRows(f, k), columns = EqmFrontColumns(f, k);
   const PetscInt *const place = f->at_parent + f->row_start[child] + EqmFrontColumns(f, child);
-  PetscScalar *const own = f->value + f->value_start[k];
 
   for (PetscInt j = begin; j < end; j++) {
     const PetscScalar *const from = f->update[child] + (size_t)j * (size_t)rest;
@@ -45,7 +44,7 @@ static void TakeColumns(EqmFrontal f, PetscInt k, PetscInt child, PetscInt begin
       PetscScalar *const to = update + (size_t)(place[j] - columns) * (size_t)(rows - columns);
       for (PetscInt i = j; i < rest; i++) to[place[i] - columns] += from[i];
     } else if (!update && place[j] < columns) {
-      PetscScalar *const to = own + (size_t)place[j] * (size_t)rows;
+      PetscScalar *const to = f->panel[k] + (size_t)place[j] * (size_t)rows;
       for (PetscInt i = j; i < rest; i++) to[place[i]] += from[i];
     }
   }
@@ -69,9 +68,9 @@ static void Assemble(EqmFrontal f, PetscInt k, PetscBool divide, const PetscScal
 {
   const size_t numbers = (size_t)EqmFrontRows(f, k) * (size_t)EqmFrontColumns(f, k);
 
-  memset(f->value + f->value_start[k], 0, numbers * sizeof(PetscScalar));
+  memset(f->panel[k], 0, numbers * sizeof(PetscScalar));
   for (PetscInt q = f->entry_start[k]; q < f->entry_start[k + 1]; q++)
-    f->value[f->entry_target[q]] = matrix[f->entry_source[q]];
+    f->panel[k][f->entry_target[q]] = matrix[f->entry_source[q]];
   TakeChildren(f, k, divide, NULL);
 }
 
@@ -79,7 +78,7 @@ static void Assemble(EqmFrontal f, PetscInt k, PetscBool divide, const PetscScal
 static void Eliminate(EqmFrontal f, PetscInt k, PetscBool divide)
 {
   const PetscInt rows = EqmFrontRows(f, k), columns = EqmFrontColumns(f, k), block = BLOCK;
-  PetscScalar *const own = f->value + f->value_start[k];
+  PetscScalar *const own = f->panel[k];
 
   for (PetscInt begin = 0; begin < columns; begin += block) {
     const PetscInt end = PetscMin(begin + block, columns), piece = ROWS_OF_PIECE;
@@ -101,7 +100,7 @@ static void Eliminate(EqmFrontal f, PetscInt k, PetscBool divide)
 static void Update(EqmFrontal f, PetscInt k, PetscBool divide, PetscScalar *update)
 {
   const PetscInt rows = EqmFrontRows(f, k), columns = EqmFrontColumns(f, k), rest = rows - columns, block = BLOCK;
-  const PetscScalar *const below = f->value + f->value_start[k] + columns;
+  const PetscScalar *const below = f->panel[k] + columns;
 
   if (!divide) {
     EqmDenseUpdate(below, rows, rest, columns, 0, rest, update);
@@ -113,12 +112,33 @@ static void Update(EqmFrontal f, PetscInt k, PetscBool divide, PetscScalar *upda
   TakeChildren(f, k, divide, update);
 }
 
-/* One front; `update` gets its update matrix. */
-static void FactorFront(EqmFrontal f, PetscInt k, PetscBool divide, const PetscScalar *matrix, PetscScalar *update)
+/* What is wanted of the factor in double precision. */
+static void KeepBlock(EqmFrontal f, PetscInt k)
 {
+  const PetscInt rows = EqmFrontRows(f, k), *const row = f->row + f->row_start[k];
+
+  for (PetscInt j = 0; j < EqmFrontColumns(f, k); j++) {
+    const PetscScalar *const from = f->panel[k] + (size_t)j * (size_t)rows;
+    const PetscInt column = f->kept_at[f->column[k] + j];
+    for (PetscInt i = j; i < rows && column >= 0; i++) { /* fronts hold zeros of other unknowns, too */
+      const PetscInt at = f->kept_at[row[i]];
+      if (at >= 0) f->kept_block[(size_t)column * (size_t)f->num_kept + (size_t)at] = from[i];
+    }
+  }
+}
+
+/* One front. `work`: of single precision, room for its columns; `update` gets its update matrix. */
+static void FactorFront(EqmFrontal f, PetscInt k, PetscBool divide, const PetscScalar *matrix, PetscScalar *work,
+                        PetscScalar *update)
+{
+  f->panel[k] = f->is_single ? work : (PetscScalar *)f->value + f->value_start[k];
   Assemble(f, k, divide, matrix);
   Eliminate(f, k, divide);
   if (EqmFrontRest(f, k) > 0) Update(f, k, divide, update);
+  if (f->kept_at) KeepBlock(f, k);
+  if (f->is_single &&
+      !EqmDenseNarrow(f->panel[k], EqmFrontRows(f, k), EqmFrontColumns(f, k), (float *)f->value + f->value_start[k]))
+    Note(&f->not_definite);
   f->update[k] = update;
 }
 
@@ -126,13 +146,15 @@ static void FactorFront(EqmFrontal f, PetscInt k, PetscBool divide, const PetscS
 static void FactorBranch(EqmFrontal f, PetscInt end, const PetscScalar *matrix)
 {
   const size_t last = (size_t)EqmFrontRest(f, end);
-  PetscScalar *const stack = Allocate(f, f->stack[end]), *const update = Allocate(f, last * last);
+  PetscScalar *const stack = Allocate(f, f->stack[end], sizeof(PetscScalar)),
+                     *const update = Allocate(f, last * last, sizeof(PetscScalar)),
+                     *const work = Allocate(f, f->is_single ? f->most_panel[end] : 0, sizeof(PetscScalar));
   size_t top = 0;
 
-  for (PetscInt k = f->first_below[end]; stack && update && k <= end && !HasFailed(f); k++) {
+  for (PetscInt k = f->first_below[end]; stack && update && work && k <= end && !HasFailed(f); k++) {
     const size_t rest = (size_t)EqmFrontRest(f, k);
     size_t bottom = top;
-    FactorFront(f, k, PETSC_FALSE, matrix, k < end ? stack + top : update);
+    FactorFront(f, k, PETSC_FALSE, matrix, work, k < end ? stack + top : update);
     for (PetscInt q = f->child_start[k]; q < f->child_start[k + 1]; q++) {
       const size_t of_child = (size_t)EqmFrontRest(f, f->child[q]);
       bottom -= of_child * of_child;
@@ -143,6 +165,7 @@ static void FactorBranch(EqmFrontal f, PetscInt end, const PetscScalar *matrix)
     top = bottom + rest * rest;
   }
   f->update[end] = update;
+  free(work);
   free(stack);
 }
 
@@ -160,9 +183,12 @@ static void FactorTree(EqmFrontal f, PetscInt k, const PetscScalar *matrix)
   }
 #pragma omp taskwait
   const size_t rest = (size_t)EqmFrontRest(f, k);
-  PetscScalar *const update = Allocate(f, rest * rest);
-  if (!HasFailed(f)) FactorFront(f, k, PETSC_TRUE, matrix, update);
+  PetscScalar *const update = Allocate(f, rest * rest, sizeof(PetscScalar)), *const work = Allocate(
+                                                                                 f, f->is_single ? f->most_panel[k] : 0,
+                                                                                 sizeof(PetscScalar));
+  if (!HasFailed(f)) FactorFront(f, k, PETSC_TRUE, matrix, work, update);
   f->update[k] = update;
+  free(work);
   for (PetscInt q = f->child_start[k]; q < f->child_start[k + 1]; q++) free(f->update[f->child[q]]);
 }
 
@@ -174,8 +200,9 @@ PetscErrorCode EqmFrontalFactor(EqmFrontal f, const PetscScalar *value, PetscBoo
   PetscFunctionBegin;
   *success = PETSC_FALSE;
   f->not_definite = f->no_memory = 0;
-  if (!f->value) f->value = Allocate(f, f->symbolic->xsize);
+  if (!f->value) f->value = Allocate(f, f->symbolic->xsize, f->is_single ? sizeof(float) : sizeof(PetscScalar));
   if (f->no_memory) PetscFunctionReturn(0);
+  if (f->kept_at) PetscCall(PetscArrayzero(f->kept_block, (size_t)f->num_kept * (size_t)f->num_kept));
 #pragma omp parallel if (f->flops > EQM_FRONTAL_LEAST_FLOPS)
 #pragma omp single
   {
@@ -186,23 +213,5 @@ PetscErrorCode EqmFrontalFactor(EqmFrontal f, const PetscScalar *value, PetscBoo
   }
   for (PetscInt k = 0; k < num_roots; k++) free(f->update[root[k]]);
   *success = (PetscBool)!HasFailed(f);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmFrontalGetBlock(EqmFrontal f, PetscInt n, const PetscInt *at, PetscScalar *block)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(block, (size_t)n * (size_t)n));
-  for (PetscInt k = 0; k < f->num_fronts; k++) {
-    const PetscInt rows = EqmFrontRows(f, k), columns = EqmFrontColumns(f, k);
-    for (PetscInt j = 0; j < columns; j++) {
-      const PetscScalar *const from = f->value + f->value_start[k] + (size_t)j * (size_t)rows;
-      const PetscInt column = at[f->column[k] + j];
-      for (PetscInt i = j; i < rows && column >= 0; i++) { /* fronts hold zeros of other unknowns, too */
-        const PetscInt row = at[f->row[f->row_start[k] + i]];
-        if (row >= 0) block[(size_t)column * (size_t)n + (size_t)row] = from[i];
-      }
-    }
-  }
   PetscFunctionReturn(0);
 }

@@ -28,10 +28,16 @@ struct _p_EqmFrontal {
   unsigned char *is_inside;      /* it is within a branch, its end included */
   PetscInt *at_end;              /* within a branch, per row beyond it: which of those of its end */
   size_t *stack;                 /* per end of a branch: numbers that the updates within take at most */
+  size_t *most_panel;            /* of the columns of a front, or of one within a branch: numbers */
   PetscInt *most_rows;           /* of a front, or within a branch */
   PetscInt *passed_start;        /* per front outside branches and end of one: where in `passed` */
   PetscReal flops;               /* of a factorisation */
-  PetscScalar *value, **update;  /* update: until the parent has taken it */
+  PetscBool is_single;           /* the factor is kept in single precision */
+  void *value;                   /* the factor, in either */
+  PetscScalar **panel, **update; /* of a front at work its columns; its update, until the parent has taken it */
+  PetscInt num_kept;             /* unknowns whose block of the factor is wanted; where they are in it; the block */
+  const PetscInt *kept_at;
+  PetscScalar *kept_block;
   PetscScalar *columns, *passed; /* of a solve: right-hand sides, what fronts hand to their parents */
   int not_definite, no_memory;   /* found by any thread */
 };
@@ -47,6 +53,12 @@ static inline PetscInt EqmFrontColumns(EqmFrontal f, PetscInt k)
 static inline PetscInt EqmFrontRows(EqmFrontal f, PetscInt k)
 {
   return f->row_start[k + 1] - f->row_start[k];
+}
+
+/* Numbers in a front's columns. */
+static inline size_t EqmFrontPanel(EqmFrontal f, PetscInt k)
+{
+  return (size_t)EqmFrontRows(f, k) * (size_t)EqmFrontColumns(f, k);
 }
 
 /* Rows of a front's update matrix. */

@@ -52,6 +52,29 @@ static PetscScalar *Passed(const Sweep *s, PetscInt k)
   return s->f->passed + (size_t)s->f->passed_start[k] * (size_t)s->count;
 }
 
+/* Substitution with a front's columns. */
+static void Forward(const Sweep *s, PetscInt k, PetscScalar *x)
+{
+  const EqmFrontal f = s->f;
+  const PetscInt rows = EqmFrontRows(f, k), columns = EqmFrontColumns(f, k);
+
+  if (f->is_single)
+    EqmDenseForwardSingle((const float *)f->value + f->value_start[k], rows, columns, s->count, x);
+  else
+    EqmDenseForward((const PetscScalar *)f->value + f->value_start[k], rows, columns, s->count, x);
+}
+
+static void Backward(const Sweep *s, PetscInt k, PetscScalar *x)
+{
+  const EqmFrontal f = s->f;
+  const PetscInt rows = EqmFrontRows(f, k), columns = EqmFrontColumns(f, k);
+
+  if (f->is_single)
+    EqmDenseBackwardSingle((const float *)f->value + f->value_start[k], rows, columns, s->count, x);
+  else
+    EqmDenseBackward((const PetscScalar *)f->value + f->value_start[k], rows, columns, s->count, x);
+}
+
 static void ForwardBranch(const Sweep *s, PetscInt end)
 {
   const EqmFrontal f = s->f;
@@ -62,7 +85,7 @@ static void ForwardBranch(const Sweep *s, PetscInt end)
   for (PetscInt k = f->first_below[end]; x && k <= end; k++) {
     const PetscInt rows = EqmFrontRows(f, k), columns = EqmFrontColumns(f, k);
     Gather(s, k, PETSC_FALSE, x);
-    EqmDenseForward(f->value + f->value_start[k], rows, columns, count, x);
+    Forward(s, k, x);
     PutOwn(s, k, x);
     for (PetscInt i = columns; i < rows; i++) {
       const PetscInt row = f->row[f->row_start[k] + i];
@@ -100,7 +123,7 @@ static void ForwardTree(const Sweep *s, PetscInt k)
       for (PetscInt c = 0; c < count; c++) x[(size_t)c * (size_t)rows + place[i]] += from[i * count + c];
     }
   }
-  EqmDenseForward(f->value + f->value_start[k], rows, columns, count, x);
+  Forward(s, k, x);
   PutOwn(s, k, x);
   for (PetscInt i = columns; i < rows; i++) {
     for (PetscInt c = 0; c < count; c++) passed[(i - columns) * count + c] = x[(size_t)c * (size_t)rows + i];
@@ -117,7 +140,7 @@ static void BackwardTree(const Sweep *s, PetscInt k)
 
   for (PetscInt j = k; x && j >= first; j--) {
     Gather(s, j, PETSC_TRUE, x);
-    EqmDenseBackward(f->value + f->value_start[j], EqmFrontRows(f, j), EqmFrontColumns(f, j), s->count, x);
+    Backward(s, j, x);
     PutOwn(s, j, x);
   }
   free(x);

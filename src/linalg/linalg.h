@@ -72,6 +72,10 @@ typedef enum {
 } EqmSolverKind;
 PETSC_INTERN const char *const EqmSolverKinds[];
 
+/* Of the factors of EQM_MATRIX_STEP and EQM_MATRIX_METRIC; all others are double. */
+typedef enum { EQM_PRECISION_SINGLE, EQM_PRECISION_DOUBLE } EqmPrecision;
+PETSC_INTERN const char *const EqmPrecisions[];
+
 /* What a factorisation takes, known before there are numbers; zero for multigrid and PETSc's solvers. */
 typedef struct {
   PetscReal nonzeros, flops; /* of the factor, all ranks together */
@@ -88,7 +92,8 @@ PETSC_INTERN PetscErrorCode EqmMemoryLimit(MPI_Comm comm, PetscReal *bytes);
 typedef enum {
   EQM_MATRIX_SCALAR,  /* one unknown per vertex, easy for multigrid */
   EQM_MATRIX_COUPLED, /* several, hard for multigrid: factored wherever that fits */
-  EQM_MATRIX_METRIC   /* several, only applied, where one cycle will do as well */
+  EQM_MATRIX_STEP,    /* the same; solutions are steps to try, for which factors in single precision will do */
+  EQM_MATRIX_METRIC   /* several, only applied, where one cycle will do as well, or a factor in single precision */
 } EqmMatrixUse;
 
 /* A solver for one symmetric positive definite matrix whose values change and whose pattern stays. */
@@ -103,6 +108,7 @@ struct _p_EqmLinear {
   EqmAssembly assembly;
   EqmCellMatrix cell_matrix, padded_cell; /* the caller's, during a filling; the kind's own over it, or NULL */
   void *context;
+  PetscBool is_single; /* factors are kept in single precision, where the kind has a choice */
   PetscBool inexact;   /* an iteration may stop early */
   PetscReal tolerance; /* of an iteration: residual over right-hand side, if inexact in the energy norm */
   PetscBool keeps_coarse_spaces;
@@ -117,7 +123,8 @@ struct _p_EqmLinear {
   PetscErrorCode (*destroy)(EqmLinear);
 };
 
-/* List the options of linear solvers, with help: -linear_solver, -linear_shared_front, -memory_limit. */
+/* List the options of linear solvers, with help: -linear_solver, -linear_shared_front, -linear_precision,
+   -memory_limit. */
 PETSC_INTERN PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject);
 /* Fronts of more unknowns are shared between ranks. Option: -linear_shared_front. Collective. Errors: EQM_ERR_USAGE. */
 PETSC_INTERN PetscErrorCode EqmLinearGetSharedFront(MPI_Comm comm, PetscInt *unknowns);
@@ -138,6 +145,7 @@ PETSC_INTERN PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, c
 PETSC_INTERN PetscErrorCode EqmLinearTrySolve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x,
                                               PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmLinearApply(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x);
+PETSC_INTERN PetscErrorCode EqmLinearSolveStep(EqmLinear linear, PetscReal *x);
 PETSC_INTERN PetscErrorCode EqmLinearSetInexact(EqmLinear linear, PetscReal tolerance);
 PETSC_INTERN PetscErrorCode EqmLinearSetExact(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearKeepCoarseSpaces(EqmLinear linear, PetscBool keep);

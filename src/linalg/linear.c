@@ -135,6 +135,7 @@ static PetscErrorCode Obey(EqmLinear linear, EqmOrdering ordering, EqmSolverKind
 /* A solver of no kind yet. */
 static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use, EqmLinear *linear)
 {
+  PetscEnum precision = (PetscEnum)EQM_PRECISION_SINGLE;
   PetscFunctionBegin;
   PetscCall(PetscNew(linear));
   (*linear)->mesh = mesh;
@@ -142,12 +143,15 @@ static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrix
   (*linear)->unknowns = *unknowns;
   (*linear)->num_owned = unknowns->num_owned;
   (*linear)->tolerance = exact;
+  PetscCall(PetscOptionsGetEnum(NULL, NULL, "-linear_precision", EqmPrecisions, &precision, NULL));
+  (*linear)->is_single =
+      (PetscBool)(precision == (PetscEnum)EQM_PRECISION_SINGLE && (use == EQM_MATRIX_STEP || use == EQM_MATRIX_METRIC));
   PetscCall(MPIU_Allreduce(&unknowns->num_owned, &(*linear)->num_unknowns, 1, MPIU_INT, MPI_SUM, mesh->comm));
   PetscFunctionReturn(0);
 }
 
-/* A solver for matrices with the given unknowns (whose arrays must outlive it). Options: -linear_solver, -memory_limit.
-   Errors: EQM_ERR_USAGE if the solver asked for does not fit. Collective. */
+/* A solver for matrices with the given unknowns (whose arrays must outlive it). Options: -linear_solver,
+   -linear_precision, -memory_limit. Errors: EQM_ERR_USAGE if the solver asked for does not fit. Collective. */
 PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, EqmMatrixUse use,
                                EqmLinear *out)
 {

@@ -52,6 +52,21 @@ PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void
   PetscFunctionReturn(0);
 }
 
+/* An iteration that has not converged, which all ranks know of, is an error. */
+static PetscErrorCode CheckSuccess(EqmLinear linear, PetscBool success)
+{
+  PetscFunctionBegin;
+  if (!success && linear->kind == EQM_SOLVER_PETSC)
+    EqmFail(linear->mesh->comm, EQM_ERR_USAGE,
+            "the solver that the options -linear_... describe did not converge; give it more iterations "
+            "(-linear_ksp_max_it) or another preconditioner, or leave -linear_solver to the program");
+  PetscCheck(
+      success, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
+      "the iteration of -linear_solver %s did not converge: the matrix may not be definite; try -linear_solver %s",
+      EqmSolverKinds[linear->kind], linear->mesh->size == 1 ? "multifrontal" : "mumps");
+  PetscFunctionReturn(0);
+}
+
 /* x = B b with a fixed symmetric definite B near A^-1: the factor's inverse itself, or one multigrid cycle. What turns
    gradients into directions asks for no more, and a truncated iteration would not be linear. Columns as for
    EqmLinearSolve. Collective. */
@@ -69,6 +84,23 @@ PetscErrorCode EqmLinearApply(EqmLinear linear, PetscInt num_rhs, const PetscRea
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_SOLVE));
   PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
   work->solves += num_rhs;
+  PetscFunctionReturn(0);
+}
+
+/* x <- A^-1 x as well as a step asks for: one pass with the factor, or an iteration. Not looked at: the caller finds
+   out from a product with it whether it is finite, which spares a reduction. Collective. */
+PetscErrorCode EqmLinearSolveStep(EqmLinear linear, PetscReal *x)
+{
+  EqmWork *work;
+  PetscBool success = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_SOLVE));
+  PetscCall(linear->solve(linear, 1, x, x, &success));
+  PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_SOLVE));
+  PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
+  work->solves++;
+  PetscCall(CheckSuccess(linear, success));
   PetscFunctionReturn(0);
 }
 
@@ -136,13 +168,6 @@ PetscErrorCode EqmLinearSolve(EqmLinear linear, PetscInt num_rhs, const PetscRea
 
   PetscFunctionBegin;
   PetscCall(EqmLinearTrySolve(linear, num_rhs, b, x, &success));
-  if (!success && linear->kind == EQM_SOLVER_PETSC)
-    EqmFail(linear->mesh->comm, EQM_ERR_USAGE,
-            "the solver that the options -linear_... describe did not converge; give it more iterations "
-            "(-linear_ksp_max_it) or another preconditioner, or leave -linear_solver to the program");
-  PetscCheck(
-      success, linear->mesh->comm, PETSC_ERR_NOT_CONVERGED,
-      "the iteration of -linear_solver %s did not converge: the matrix may not be definite; try -linear_solver %s",
-      EqmSolverKinds[linear->kind], linear->mesh->size == 1 ? "multifrontal" : "mumps");
+  PetscCall(CheckSuccess(linear, success));
   PetscFunctionReturn(0);
 }

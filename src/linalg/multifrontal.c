@@ -23,6 +23,7 @@ static PetscErrorCode Analyse(EqmLinear linear, EqmOrdering ordering)
   PetscCall(EqmCholmodGetView(linear, &view));
   PetscCall(EqmFrontalCreate(&view, order, &frontal));
   linear->data = frontal;
+  if (linear->is_single) PetscCall(EqmFrontalKeepSingle(frontal));
   PetscCall(EqmCholmodRestoreView(linear, &view));
   PetscCall(PetscFree(order));
   PetscCall(Check(frontal, "analysis"));

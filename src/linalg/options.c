@@ -3,6 +3,7 @@
 
 const char *const EqmSolverKinds[] = {"auto",      "cholmod", "multifrontal",  "substructure", "mumps",
                                       "multigrid", "petsc",   "EqmSolverKind", "EQM_SOLVER_",  NULL};
+const char *const EqmPrecisions[] = {"single", "double", "EqmPrecision", "EQM_PRECISION_", NULL};
 
 /* Smaller ones are done sooner on one rank. */
 enum { SHARED_FRONT = 4000 };
@@ -20,7 +21,7 @@ PetscErrorCode EqmLinearGetSharedFront(MPI_Comm comm, PetscInt *unknowns)
 
 PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject)
 {
-  PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
+  PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO, precision = (PetscEnum)EQM_PRECISION_SINGLE;
   PetscReal limit = 0.;
   PetscInt shared_front = SHARED_FRONT;
 
@@ -32,6 +33,10 @@ PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject)
   PetscCall(PetscOptionsInt("-linear_shared_front",
                             "dense fronts of more unknowns are shared between ranks, with substructure and ScaLAPACK",
                             "EqmLinearCreate", shared_front, &shared_front, NULL));
+  PetscCall(PetscOptionsEnum("-linear_precision",
+                             "how multifrontal and substructure keep factors that only serve to find steps: single "
+                             "takes half the memory, and less time",
+                             "EqmLinearCreate", EqmPrecisions, precision, &precision, NULL));
   PetscCall(
       PetscOptionsReal("-memory_limit",
                        "at most so many GiB per rank for factors; beyond, -linear_solver auto iterates (0: most of "

@@ -46,14 +46,14 @@ static PetscErrorCode MakeShare(EqmSubstructure *s, const EqmBlocks *blocks, Pet
 {
   const size_t n = (size_t)s->num_separator_unknowns;
   const PetscScalar one = 1.;
+  PetscBLASInt stride;
 
   PetscFunctionBegin;
+  PetscCall(PetscBLASIntCast(s->num_separator_unknowns, &stride));
   PetscCall(PetscCalloc1(n * n, share));
-  for (PetscInt j = 0; s->factor && j < s->num_separator_unknowns;
-       j += PANEL) { /* the zeros above the diagonal are left out */
-    const size_t diagonal = (size_t)j * n + (size_t)j;
-    const PetscBLASInt rows = (PetscBLASInt)(s->num_separator_unknowns - j), columns = PetscMin(PANEL, rows),
-                       stride = (PetscBLASInt)n;
+  for (PetscBLASInt j = 0; s->factor && j < stride; j += PANEL) { /* the zeros above the diagonal are left out */
+    const size_t diagonal = (size_t)j * (n + 1);
+    const PetscBLASInt rows = stride - j, columns = PetscMin(PANEL, rows);
     PetscCallBLAS("BLASsyrk", BLASsyrk_("L", "N", &rows, &columns, &one, s->block + diagonal, &stride, &one,
                                         *share + diagonal, &stride));
   }
@@ -81,6 +81,11 @@ static PetscErrorCode FactorInner(EqmLinear linear, const EqmBlocks *blocks, Pet
     for (PetscInt q = start[i]; q < end; q++) value[q] = ValueAt(blocks, s->source[q]);
     if (i >= s->num_inner) value[end] = s->shift[i - s->num_inner];
   }
+  if (s->factor && !s->block) {
+    const size_t separators = (size_t)s->num_separator_unknowns;
+    PetscCall(PetscMalloc1(separators * separators, &s->block));
+    PetscCall(EqmFrontalKeepBlock(s->factor, s->num_separator_unknowns, s->separator_at, s->block));
+  }
   if (s->factor) PetscCall(EqmFrontalFactor(s->factor, value, &mine));
   PetscCall(EqmSubstructureCheckMemory(linear, "factorisation"));
   PetscCall(MPIU_Allreduce(&mine, success, 1, MPIU_BOOL, MPI_LAND, linear->mesh->comm));
@@ -99,9 +104,6 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscCall(EqmBlocksGet(matrix, &blocks));
   PetscCall(FactorInner(linear, &blocks, success));
   if (*success) {
-    if (s->factor && !s->block)
-      PetscCall(PetscMalloc1((size_t)s->num_separator_unknowns * (size_t)s->num_separator_unknowns, &s->block));
-    if (s->factor) PetscCall(EqmFrontalGetBlock(s->factor, s->num_separator_unknowns, s->separator_at, s->block));
     PetscCall(MakeShare(s, &blocks, &share));
     PetscCall(EqmInterfaceFactor(s->interface, &share, success));
   }

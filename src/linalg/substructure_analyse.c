@@ -157,6 +157,7 @@ static PetscErrorCode AnalyseInner(EqmLinear linear, const EqmSeparation *separa
   }
   for (PetscInt k = s->num_inner; k < n; k++) order[count++] = k;
   PetscCall(EqmFrontalCreate(&s->matrix, order, &s->factor));
+  if (linear->is_single) PetscCall(EqmFrontalKeepSingle(s->factor));
   PetscCall(PetscFree(order));
   PetscFunctionReturn(0);
 }

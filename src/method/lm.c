@@ -193,7 +193,8 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
     PetscCall(EqmProblemAddTerm(problem, lm->upright));
     SetKappa(lm, 1.);
   }
-  PetscCall(EqmProblemCreateLinear(problem, EQM_MATRIX_COUPLED, &lm->linear));
+  /* quasi-Newton steps make up for single precision; without them every digit of a step is one of the map */
+  PetscCall(EqmProblemCreateLinear(problem, lm->most_inner > 0 ? EQM_MATRIX_STEP : EQM_MATRIX_COUPLED, &lm->linear));
   PetscCall(EqmLinearSetInexact(lm->linear, inexact));
   PetscCall(MakeRoom(method));
   PetscCall(VecSet(lm->mean, 0.)); /* where the residual has no mean it stays so */

@@ -30,6 +30,7 @@ typedef struct {
   PetscReal *velocity, *acceleration, *ambient;
   Vec descent, mean, step, curve, move; /* -b, g, d, d2, t d + t^2 d2 */
   Vec solved_mean;                      /* y = H^-1 g */
+  PetscReal mean_product;               /* g.y */
   Vec old_descent, direction;           /* of the quasi-Newton steps */
   Vec part;                             /* what the added terms contribute */
   EqmPairs pairs;
@@ -39,7 +40,8 @@ typedef struct {
 PETSC_INTERN PetscErrorCode EqmLmAddTerms(EqmMethod method, EqmTrial *trial);
 PETSC_INTERN PetscErrorCode EqmLmEvaluate(EqmMethod method, EqmTrial *trial);
 /* lm_model.c */
-PETSC_INTERN PetscErrorCode EqmLmGradient(EqmMethod method, EqmIterate iterate);
+PETSC_INTERN PetscErrorCode EqmLmGradient(EqmMethod method);
+PETSC_INTERN PetscErrorCode EqmLmGradientNorm(EqmMethod method, PetscReal *norm);
 PETSC_INTERN PetscErrorCode EqmLmLinearise(EqmMethod method, EqmIterate iterate);
 PETSC_INTERN PetscErrorCode EqmLmFactor(EqmMethod method, PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmLmSolveForStep(EqmMethod method, PetscBool *success);

@@ -67,28 +67,29 @@ static PetscErrorCode PullBack(EqmMethod method, const PetscReal *value, Vec res
 }
 
 /* The mean's rank-one term, by Sherman and Morrison: z += y (g.z) / (1 - g.y). Nothing to do where the residual keeps
- * it.
- */
+   it. */
 static PetscErrorCode AddMeanTerm(EqmLm *lm, Vec z)
 {
-  PetscReal gz, gy;
+  PetscReal gz;
 
   PetscFunctionBegin;
   if (!lm->residual->without_mean) PetscFunctionReturn(0);
   PetscCall(VecDot(lm->mean, z, &gz));
-  PetscCall(VecDot(lm->mean, lm->solved_mean, &gy));
-  PetscCall(VecAXPY(z, gz / PetscMax(1. - gy, 1e-12), lm->solved_mean));
+  PetscCall(VecAXPY(z, gz / PetscMax(1. - lm->mean_product, 1e-12), lm->solved_mean));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Norm(EqmMesh mesh, PetscInt n, const PetscReal *x, PetscReal *norm)
+/* Euclidean norms of two fields of n reals on this rank, with one reduction. Collective. */
+static PetscErrorCode Norms(EqmMesh mesh, PetscInt n, const PetscReal *x, const PetscReal *y, PetscReal norm[2])
 {
-  PetscReal local = 0., sum;
-
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < n; k++) local += x[k] * x[k];
-  PetscCall(MPIU_Allreduce(&local, &sum, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
-  *norm = PetscSqrtReal(sum);
+  norm[0] = norm[1] = 0.;
+  for (PetscInt k = 0; k < n; k++) {
+    norm[0] += x[k] * x[k];
+    norm[1] += y[k] * y[k];
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, norm, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
+  for (int k = 0; k < 2; k++) norm[k] = PetscSqrtReal(norm[k]);
   PetscFunctionReturn(0);
 }
 
@@ -118,6 +119,7 @@ PetscErrorCode EqmLmSolveForStep(EqmMethod method, PetscBool *success)
   PetscCall(VecRestoreArrayWrite(lm->step, &d));
   PetscCall(VecRestoreArrayWrite(lm->solved_mean, &y));
   PetscCall(PetscFree(columns));
+  PetscCall(VecDot(lm->mean, lm->solved_mean, &lm->mean_product));
   PetscCall(AddMeanTerm(lm, lm->step));
   PetscFunctionReturn(0);
 }
@@ -153,7 +155,7 @@ PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio)
   EqmLm *const lm = method->data;
   const EqmProblem problem = method->problem;
   const PetscInt n = problem->domain->dim * problem->mesh->num_owned;
-  PetscReal step_norm, curve_norm;
+  PetscReal norm[2];
 
   PetscFunctionBegin;
   PetscCall(DifferentiateAlongStep(method));
@@ -163,9 +165,9 @@ PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio)
   PetscCall(EqmLmApplyInverse(method, lm->curve));
   PetscCall(VecScale(lm->curve, -.5));
   PetscCall(EqmDomainExpand(problem->domain, &lm->now.place, lm->curve, lm->acceleration));
-  PetscCall(Norm(problem->mesh, n, lm->velocity, &step_norm));
-  PetscCall(Norm(problem->mesh, n, lm->acceleration, &curve_norm));
-  *ratio = step_norm > 0. ? curve_norm / step_norm : 0.;
+  PetscCall(Norms(problem->mesh, n, lm->velocity, lm->acceleration, norm));
+  PetscCheck(norm[1] <= PETSC_MAX_REAL, method->comm, PETSC_ERR_FP, "the second-order correction is not finite");
+  *ratio = norm[0] > 0. ? norm[1] / norm[0] : 0.;
   PetscFunctionReturn(0);
 }
 
@@ -213,11 +215,11 @@ PetscErrorCode EqmLmPredictedDecrease(EqmMethod method, PetscReal *decrease)
 }
 
 /* Slopes d rho / d a and minus half the gradient of the objective at the present map. Collective. */
-PetscErrorCode EqmLmGradient(EqmMethod method, EqmIterate iterate)
+PetscErrorCode EqmLmGradient(EqmMethod method)
 {
   EqmLm *const lm = method->data;
   const EqmMesh mesh = method->problem->mesh;
-  PetscReal norm, value = 0.;
+  PetscReal value = 0.;
 
   PetscFunctionBegin;
 #pragma omp parallel for schedule(static)
@@ -230,18 +232,28 @@ PetscErrorCode EqmLmGradient(EqmMethod method, EqmIterate iterate)
   PetscCall(VecZeroEntries(lm->part));
   PetscCall(EqmTermsAdd(method->problem, &lm->now.place, lm->now.image, &value, lm->part));
   PetscCall(VecAXPBY(lm->descent, -.5 * lm->term_scale, -1., lm->part));
-  PetscCall(VecNorm(lm->descent, NORM_2, &norm));
-  iterate->gradient_norm = 2. * norm;
   PetscFunctionReturn(0);
 }
 
-/* Gradient and the mean's vector at the present map. Collective. */
+/* That of the objective. Collective. */
+PetscErrorCode EqmLmGradientNorm(EqmMethod method, PetscReal *norm)
+{
+  const EqmLm *const lm = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(VecNorm(lm->descent, NORM_2, norm));
+  *norm *= 2.;
+  PetscFunctionReturn(0);
+}
+
+/* Gradient, its norm and the mean's vector at the present map. Collective. */
 PetscErrorCode EqmLmLinearise(EqmMethod method, EqmIterate iterate)
 {
   EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmLmGradient(method, iterate));
+  PetscCall(EqmLmGradient(method));
+  PetscCall(EqmLmGradientNorm(method, &iterate->gradient_norm));
   if (lm->residual->without_mean) PetscCall(PullBack(method, NULL, lm->mean));
   PetscFunctionReturn(0);
 }
@@ -257,8 +269,8 @@ PetscErrorCode EqmLmFactor(EqmMethod method, PetscBool *success)
   PetscFunctionReturn(0);
 }
 
-/* q <- H^-1 q with the present factor, the mean's term included; `context` is the method. lm->mean must be the factor's
-   Collective. */
+/* q <- H^-1 q with the present factor, the mean's term included; `context` is the method. lm->mean must be the
+   factor's. Whether the result is finite is for the caller to find out. Collective. */
 PetscErrorCode EqmLmApplyInverse(void *context, Vec q)
 {
   const EqmMethod method = context;
@@ -267,7 +279,7 @@ PetscErrorCode EqmLmApplyInverse(void *context, Vec q)
 
   PetscFunctionBegin;
   PetscCall(VecGetArray(q, &array));
-  PetscCall(EqmLinearSolve(lm->linear, 1, array, array));
+  PetscCall(EqmLinearSolveStep(lm->linear, array));
   PetscCall(VecRestoreArray(q, &array));
   PetscCall(AddMeanTerm(lm, q));
   PetscFunctionReturn(0);

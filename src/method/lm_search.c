@@ -96,21 +96,23 @@ PetscErrorCode EqmLmInnerSteps(EqmMethod method, EqmIterate iterate)
   PetscCall(PetscMalloc1(most + 1, &objective));
   objective[0] = lm->now.objective;
   PetscCall(EqmPairsForget(lm->pairs));
-  PetscCall(EqmLmGradient(method, iterate)); /* lm->mean stays the factor's */
+  PetscCall(EqmLmGradient(method)); /* lm->mean stays the factor's */
   for (PetscInt k = 0; k < most && (k == 0 || !IsUsedUp(k, objective, iterate->objective)); k++) {
     PetscCall(VecCopy(lm->descent, lm->direction));
     PetscCall(EqmPairsDirection(lm->pairs, EqmLmApplyInverse, method, lm->direction));
     PetscCall(VecDot(lm->descent, lm->direction, &slope));
+    PetscCheck(PetscAbsReal(slope) <= PETSC_MAX_REAL, method->comm, PETSC_ERR_FP, "a direction of lm is not finite");
     t = PetscMin(1., 4. * t);
     if (slope > 0.) PetscCall(Backtrack(method, -2. * slope, &t));
     if (!(slope > 0.) || t == 0.) break;
     EqmLmSwap(&lm->now, &lm->attempt);
     PetscCall(VecCopy(lm->descent, lm->old_descent));
-    PetscCall(EqmLmGradient(method, iterate));
+    PetscCall(EqmLmGradient(method));
     PetscCall(
         EqmPairsAdd(lm->pairs, t, lm->direction, lm->descent, lm->old_descent)); /* descent is minus the gradient */
     objective[k + 1] = lm->now.objective;
   }
+  PetscCall(EqmLmGradientNorm(method, &iterate->gradient_norm));
   PetscCall(PetscFree(objective));
   PetscFunctionReturn(0);
 }

@@ -3,8 +3,26 @@
 struct _p_EqmPairs {
   PetscInt most, count, oldest; /* a ring: pair k, from the oldest, is at (oldest + k) % most */
   Vec *step, *change;
-  PetscReal *curvature; /* s.y */
+  PetscReal *product; /* at i most + j the product s_i.y_j, pair i not newer than j, both places in the ring */
+  Vec *list;          /* scratch: the pairs' vectors from the oldest to the newest */
+  PetscReal *factor, *dot;
 };
+
+static inline PetscInt Place(EqmPairs pairs, PetscInt k)
+{
+  return (pairs->oldest + k) % pairs->most;
+}
+
+static inline PetscReal *Product(EqmPairs pairs, PetscInt i, PetscInt j)
+{
+  return pairs->product + Place(pairs, i) * pairs->most + Place(pairs, j);
+}
+
+static Vec *List(EqmPairs pairs, const Vec *of, PetscInt count)
+{
+  for (PetscInt k = 0; k < count; k++) pairs->list[k] = of[Place(pairs, k)];
+  return pairs->list;
+}
 
 /* Allocate `most` pairs of vectors with the layout of `like`. Collective. */
 PetscErrorCode EqmPairsCreate(Vec like, PetscInt most, EqmPairs *out)
@@ -16,7 +34,7 @@ PetscErrorCode EqmPairsCreate(Vec like, PetscInt most, EqmPairs *out)
   pairs->most = most;
   PetscCall(VecDuplicateVecs(like, most, &pairs->step));
   PetscCall(VecDuplicateVecs(like, most, &pairs->change));
-  PetscCall(PetscMalloc1(most, &pairs->curvature));
+  PetscCall(PetscMalloc4(most * most, &pairs->product, most, &pairs->list, most, &pairs->factor, most, &pairs->dot));
   *out = pairs;
   PetscFunctionReturn(0);
 }
@@ -28,7 +46,7 @@ PetscErrorCode EqmPairsDestroy(EqmPairs *pairs)
   if (!*pairs) PetscFunctionReturn(0);
   PetscCall(VecDestroyVecs((*pairs)->most, &(*pairs)->step));
   PetscCall(VecDestroyVecs((*pairs)->most, &(*pairs)->change));
-  PetscCall(PetscFree((*pairs)->curvature));
+  PetscCall(PetscFree4((*pairs)->product, (*pairs)->list, (*pairs)->factor, (*pairs)->dot));
   PetscCall(PetscFree(*pairs));
   PetscFunctionReturn(0);
 }
@@ -41,48 +59,52 @@ PetscErrorCode EqmPairsForget(EqmPairs pairs)
   PetscFunctionReturn(0);
 }
 
-/* Remember the step scale * step and the change of the gradient over it, unless its curvature is not positive.
-   Collective. */
+/* Remember the step scale * step and the change of the gradient over it, unless its curvature is not positive. One
+   reduction. Collective. */
 PetscErrorCode EqmPairsAdd(EqmPairs pairs, PetscReal scale, Vec step, Vec old_gradient, Vec new_gradient)
 {
-  const PetscInt place = (pairs->oldest + pairs->count) % pairs->most;
-  PetscReal curvature;
-
   PetscFunctionBegin;
+  if (pairs->count == pairs->most) { /* the oldest pair is overwritten even if the new one is rejected */
+    pairs->oldest = Place(pairs, 1);
+    pairs->count--;
+  }
+  const PetscInt last = pairs->count, place = Place(pairs, last);
   PetscCall(VecCopy(step, pairs->step[place]));
   PetscCall(VecScale(pairs->step[place], scale));
   PetscCall(VecWAXPY(pairs->change[place], -1., old_gradient, new_gradient));
-  PetscCall(VecDot(pairs->step[place], pairs->change[place], &curvature));
-  if (pairs->count == pairs->most) { /* the oldest pair is overwritten even if the new one is rejected */
-    pairs->oldest = (pairs->oldest + 1) % pairs->most;
-    pairs->count--;
-  }
-  if (!(curvature > 0.)) PetscFunctionReturn(0);
-  pairs->curvature[place] = curvature;
+  PetscCall(VecMDot(pairs->change[place], last + 1, List(pairs, pairs->step, last + 1), pairs->dot));
+  if (!(pairs->dot[last] > 0.)) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k <= last; k++) *Product(pairs, k, last) = pairs->dot[k];
   pairs->count++;
   PetscFunctionReturn(0);
 }
 
-/* The two-loop recursion (Nocedal and Wright, Algorithm 7.4): q <- H q. Collective. */
+/* The two-loop recursion (Nocedal and Wright, Algorithm 7.4): q <- H q. Every product in it is one of q, or of H0 q',
+   with the pairs as they are, less what the pairs that have been taken before have changed, which the products of the
+   pairs with each other tell: two reductions, however many the pairs. Collective. */
 PetscErrorCode EqmPairsDirection(EqmPairs pairs, EqmApplyInverse apply, void *context, Vec q)
 {
-  PetscReal *alpha, product;
+  const PetscInt count = pairs->count;
+  PetscReal *const factor = pairs->factor, *const dot = pairs->dot;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(pairs->most, &alpha));
-  for (PetscInt k = pairs->count - 1; k >= 0; k--) {
-    const PetscInt place = (pairs->oldest + k) % pairs->most;
-    PetscCall(VecDot(pairs->step[place], q, &product));
-    alpha[k] = product / pairs->curvature[place];
-    PetscCall(VecAXPY(q, -alpha[k], pairs->change[place]));
+  if (count == 0) {
+    PetscCall(apply(context, q));
+    PetscFunctionReturn(0);
   }
+  PetscCall(VecMDot(q, count, List(pairs, pairs->step, count), dot));
+  for (PetscInt k = count - 1; k >= 0; k--) { /* factor: minus alpha */
+    for (PetscInt j = k + 1; j < count; j++) dot[k] += factor[j] * *Product(pairs, k, j);
+    factor[k] = -dot[k] / *Product(pairs, k, k);
+  }
+  PetscCall(VecMAXPY(q, count, factor, List(pairs, pairs->change, count)));
   PetscCall(apply(context, q));
-  for (PetscInt k = 0; k < pairs->count; k++) {
-    const PetscInt place = (pairs->oldest + k) % pairs->most;
-    PetscCall(VecDot(pairs->change[place], q, &product));
-    PetscCall(VecAXPY(q, alpha[k] - product / pairs->curvature[place], pairs->step[place]));
+  PetscCall(VecMDot(q, count, List(pairs, pairs->change, count), dot));
+  for (PetscInt k = 0; k < count; k++) { /* factor: alpha minus beta */
+    for (PetscInt j = 0; j < k; j++) dot[k] += factor[j] * *Product(pairs, j, k);
+    factor[k] = -factor[k] - dot[k] / *Product(pairs, k, k);
   }
-  PetscCall(PetscFree(alpha));
+  PetscCall(VecMAXPY(q, count, factor, List(pairs, pairs->step, count)));
   PetscFunctionReturn(0);
 }
 
@@ -90,28 +112,26 @@ PetscErrorCode EqmPairsDirection(EqmPairs pairs, EqmApplyInverse apply, void *co
 PetscErrorCode EqmPairsState(EqmPairs pairs, EqmState state, EqmStateVec visit, void *context)
 {
   PetscInt count = pairs->count;
-  PetscReal *curvature;
   char name[64];
 
   PetscFunctionBegin;
   PetscCall(EqmStateSameInt(state, "the number of remembered steps", pairs->most));
   PetscCall(EqmStateInt(state, "num_pairs", &count));
-  PetscCall(PetscMalloc1(pairs->most, &curvature));
   if (EqmStateIsLoading(state)) {
     pairs->oldest = 0;
     pairs->count = PetscMin(count, pairs->most);
   }
-  for (PetscInt k = 0; k < pairs->count; k++) curvature[k] = pairs->curvature[(pairs->oldest + k) % pairs->most];
-  PetscCall(EqmStateReals(state, "pairs/curvature", pairs->count, curvature));
   for (PetscInt k = 0; k < pairs->count; k++) {
-    const PetscInt place = (pairs->oldest + k) % pairs->most;
-    pairs->curvature[place] = curvature[k];
+    const PetscInt place = Place(pairs, k);
+    for (PetscInt i = 0; i <= k; i++) pairs->dot[i] = *Product(pairs, i, k);
+    PetscCall(PetscSNPrintf(name, sizeof(name), "pairs/products%" PetscInt_FMT, k));
+    PetscCall(EqmStateReals(state, name, k + 1, pairs->dot));
+    for (PetscInt i = 0; i <= k; i++) *Product(pairs, i, k) = pairs->dot[i];
     PetscCall(PetscSNPrintf(name, sizeof(name), "pairs/step%" PetscInt_FMT, k));
     PetscCall(visit(state, context, name, pairs->step[place]));
     PetscCall(PetscSNPrintf(name, sizeof(name), "pairs/change%" PetscInt_FMT, k));
     PetscCall(visit(state, context, name, pairs->change[place]));
   }
-  PetscCall(PetscFree(curvature));
   PetscFunctionReturn(0);
 }
 

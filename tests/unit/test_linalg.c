@@ -137,7 +137,7 @@ static PetscErrorCode CheckSolve(EqmLinear linear, Model *model, PetscReal diago
 }
 
 /* A matrix that is not definite is reported as such on every rank; a good one works again after it. */
-static PetscErrorCode CheckIndefinite(EqmLinear linear, Model *model)
+static PetscErrorCode CheckIndefinite(EqmLinear linear, Model *model, PetscReal tolerance)
 {
   PetscBool success = PETSC_TRUE;
 
@@ -146,7 +146,7 @@ static PetscErrorCode CheckIndefinite(EqmLinear linear, Model *model)
   PetscCall(EqmLinearFactor(linear, ModelCell, model, 1., &success));
   CHECK(!success, "an indefinite matrix passes for definite");
   model->spoil = 0.;
-  PetscCall(CheckSolve(linear, model, 1., 2, PETSC_FALSE, 1e-12));
+  PetscCall(CheckSolve(linear, model, 1., 2, PETSC_FALSE, tolerance));
   PetscFunctionReturn(0);
 }
 
@@ -187,7 +187,8 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
   PetscCall(TestOptionsBegin(option, &options));
   PetscCall(EqmLinearCreate(mesh, ordering, unknowns, use, &linear));
   const PetscBool direct = (PetscBool)(linear->kind != EQM_SOLVER_MULTIGRID && linear->kind != EQM_SOLVER_PETSC);
-  const PetscReal tolerance = direct ? 1e-12 : 1e-9;
+  const PetscBool is_single = (PetscBool)(linear->is_single && direct && linear->kind != EQM_SOLVER_MUMPS);
+  const PetscReal tolerance = is_single ? 1e-5 : direct ? 1e-12 : 1e-9;
   PetscCall(EqmLedgerGetWork(mesh->ledger, &work));
   before = *work;
   PetscCall(CheckSolve(linear, &model, 1., 3, PETSC_FALSE, tolerance));
@@ -202,11 +203,45 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
         "%d coupled", (int)(work->coupled_factorizations - before.coupled_factorizations));
   PetscCall(CheckApply(linear, &model));
   if (direct)
-    PetscCall(CheckIndefinite(linear, &model));
+    PetscCall(CheckIndefinite(linear, &model, tolerance));
   else
     PetscCall(CheckIndefiniteMultigrid(linear, &model));
   PetscCall(EqmLinearDestroy(&linear));
   PetscCall(TestOptionsEnd(&options));
+  PetscFunctionReturn(0);
+}
+
+/* Factors for steps: single precision, half the memory and no more digits than that, and double on demand. */
+static PetscErrorCode TestPrecision(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns)
+{
+  static const char *const precisions[] = {"-linear_precision single", "-linear_precision double"};
+  Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5};
+  PetscReal bytes[2], error[2], *b, *x;
+  EqmLinear linear;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(unknowns->num_owned, &b, unknowns->num_owned, &x));
+  for (PetscInt k = 0; k < 2; k++) {
+    PetscOptions options;
+    PetscBool success;
+    PetscCall(TestOptionsBegin(precisions[k], &options));
+    PetscCall(EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_STEP, &linear));
+    PetscCall(EqmLinearFactor(linear, ModelCell, &model, 1., &success));
+    CHECK(success, "a definite matrix is refused");
+    bytes[k] = linear->estimate.bytes;
+    for (PetscInt i = 0; i < unknowns->num_owned; i++) b[i] = x[i] = Entry(unknowns->first + i, 5);
+    PetscCall(EqmLinearSolveStep(linear, x));
+    PetscCall(CheckResidual(&model, 1., b, x, k == 0 ? 1e-5 : 1e-12));
+    PetscCall(ModelApply(&model, 1., x, x));
+    error[k] = 0.;
+    for (PetscInt i = 0; i < unknowns->num_owned; i++) error[k] = PetscMax(error[k], PetscAbsReal(x[i] - b[i]));
+    PetscCall(EqmLinearDestroy(&linear));
+    PetscCall(TestOptionsEnd(&options));
+  }
+  CHECK(TestSum(PETSC_COMM_WORLD, error[0]) > 1e3 * TestSum(PETSC_COMM_WORLD, error[1]),
+        "single precision has as many digits as double");
+  CHECK(bytes[0] < bytes[1], "single precision takes %g bytes, double %g", (double)bytes[0], (double)bytes[1]);
+  PetscCall(PetscFree2(b, x));
   PetscFunctionReturn(0);
 }
 
@@ -276,6 +311,11 @@ static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, Eq
     else
       PetscCall(TestOnSeveralRanks(mesh, ordering, unknowns, option));
   }
+  if (use != EQM_MATRIX_SCALAR && mesh->num_vertices > 100) { /* else ranks have nothing inside */
+    PetscCall(TestSolver(mesh, ordering, unknowns, EQM_MATRIX_STEP, "-linear_solver auto"));
+    PetscCall(TestSolver(mesh, ordering, unknowns, EQM_MATRIX_STEP, "-linear_solver substructure"));
+    PetscCall(TestPrecision(mesh, ordering, unknowns));
+  }
   PetscCall(TestMemory(mesh, ordering, unknowns));
   PetscCall(EqmOrderingDestroy(&ordering));
   PetscFunctionReturn(0);
@@ -313,7 +353,8 @@ static PetscErrorCode TestOnMesh(const char *shape, PetscInt n, const char *part
 }
 
 /* One rank's factor and solutions on so many threads; `x` holds 5 columns. */
-static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, int threads, PetscReal *x)
+static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use, int threads,
+                                     PetscReal *x)
 {
   Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5, .spoil = 1e3};
   EqmOrdering ordering;
@@ -325,7 +366,7 @@ static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, 
   omp_set_num_threads(threads);
   PetscCall(TestOptionsBegin("-linear_solver multifrontal", &options));
   PetscCall(EqmOrderingCreate(mesh, &ordering));
-  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_COUPLED, &linear));
+  PetscCall(EqmLinearCreate(mesh, ordering, unknowns, use, &linear));
   PetscCall(EqmLinearFactor(linear, ModelCell, &model, 1., &success));
   CHECK(!success, "an indefinite matrix passes for definite on %d threads", threads);
   model.spoil = 0.;
@@ -340,8 +381,8 @@ static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, 
 }
 
 /* The same bits for any number of threads, and a solution: a surface, with many branches, and a solid, with large
-   fronts. */
-static PetscErrorCode TestThreads(const char *shape, PetscInt n)
+   fronts; in double (coupled) or single precision (steps). */
+static PetscErrorCode TestThreads(const char *shape, PetscInt n, EqmMatrixUse use)
 {
   TestMesh test;
   unsigned char *ones;
@@ -358,13 +399,14 @@ static PetscErrorCode TestThreads(const char *shape, PetscInt n)
   for (PetscInt v = 0; v < test.mesh->num_local; v++) ones[v] = 1;
   EqmUnknowns scalar = {.num_owned = test.mesh->num_owned, .start = test.mesh->global, .count = ones};
   PetscCall(PetscMalloc3(size, &x[0], size, &x[1], size, &b));
-  PetscCall(SolveOnThreads(test.mesh, &scalar, 1, x[0]));
+  PetscCall(SolveOnThreads(test.mesh, &scalar, use, 1, x[0]));
   Model model = {.mesh = test.mesh, .unknowns = scalar, .shift = .5};
   for (PetscInt i = 0; i < size; i++) b[i] = Entry(i, 3);
   for (PetscInt k = 0; k < 5; k++)
-    PetscCall(CheckResidual(&model, 1., b + k * scalar.num_owned, x[0] + k * scalar.num_owned, 1e-12));
+    PetscCall(CheckResidual(&model, 1., b + k * scalar.num_owned, x[0] + k * scalar.num_owned,
+                            use == EQM_MATRIX_STEP ? 1e-5 : 1e-12));
   for (int threads = 2; threads <= 5; threads++) {
-    PetscCall(SolveOnThreads(test.mesh, &scalar, threads, x[1]));
+    PetscCall(SolveOnThreads(test.mesh, &scalar, use, threads, x[1]));
     CHECK(!memcmp(x[0], x[1], (size_t)size * sizeof(PetscReal)), "other bits on %d threads, %s", threads, shape);
   }
   omp_set_num_threads(1);
@@ -411,8 +453,10 @@ int main(int argc, char **argv)
   PetscCall(TestOnMesh("hills", 900, "-partition metis"));
   PetscCall(TestOnMesh("hills", 300, "-partition slab")); /* shares of many pieces */
   PetscCall(TestOnMesh("hills", 16, "-partition slab"));  /* ranks with nothing inside */
-  PetscCall(TestThreads("hills", 12000));
-  PetscCall(TestThreads("ball", 9000));
+  PetscCall(TestThreads("hills", 12000, EQM_MATRIX_COUPLED));
+  PetscCall(TestThreads("hills", 12000, EQM_MATRIX_STEP));
+  PetscCall(TestThreads("ball", 9000, EQM_MATRIX_COUPLED));
+  PetscCall(TestThreads("ball", 9000, EQM_MATRIX_STEP));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
