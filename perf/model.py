@@ -25,8 +25,8 @@ MACHINE = {"flops": (1e10, "operations a second in a factorisation"), "stream": 
 DEFAULTS = {name: value for name, (value, _) in MACHINE.items()}
 # Of one iteration of the default method, from model.csv; bytes per vertex beside the factor, of a run of a million vertices
 # and of a solid of a hundred thousand, the latter with the multigrid's matrices (docs/performance.md).
-WORK = {2: {"updates": 40, "reductions": 650, "solves": 24, "bytes_per_vertex": 1300.},
-        3: {"updates": 2, "reductions": 21, "solves": 1, "bytes_per_vertex": 8200.}}
+WORK = {2: {"updates": 40, "reductions": 200, "solves": 24, "bytes_per_vertex": 1300.},
+        3: {"updates": 2, "reductions": 18, "solves": 1, "bytes_per_vertex": 8200.}}
 
 
 def ghosts(vertices, ranks, dimension):

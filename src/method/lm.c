@@ -177,6 +177,14 @@ static PetscErrorCode TakeStart(EqmMethod method, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
+/* Quasi-Newton steps towards one of the many maps with equal areas make up for a factor in single precision. Where the
+   map is unique, as beside the angle energy, or where there are none of these steps, digits of the factor are digits of
+   the map. */
+static EqmMatrixUse FactorUse(const EqmLm *lm)
+{
+  return lm->most_inner > 0 && lm->residual->without_mean ? EQM_MATRIX_STEP : EQM_MATRIX_COUPLED;
+}
+
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
   EqmLm *const lm = method->data;
@@ -193,8 +201,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
     PetscCall(EqmProblemAddTerm(problem, lm->upright));
     SetKappa(lm, 1.);
   }
-  /* quasi-Newton steps make up for single precision; without them every digit of a step is one of the map */
-  PetscCall(EqmProblemCreateLinear(problem, lm->most_inner > 0 ? EQM_MATRIX_STEP : EQM_MATRIX_COUPLED, &lm->linear));
+  PetscCall(EqmProblemCreateLinear(problem, FactorUse(lm), &lm->linear));
   PetscCall(EqmLinearSetInexact(lm->linear, inexact));
   PetscCall(MakeRoom(method));
   PetscCall(VecSet(lm->mean, 0.)); /* where the residual has no mean it stays so */
