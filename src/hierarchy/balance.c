@@ -141,41 +141,48 @@ typedef struct {
   EqmLevelMap *map;
   PetscInt coarser; /* levels for multigrid; 0: factor */
   EqmLevelSystem system;
-  PetscReal *trial[2], damping, tolerance;
+  PetscReal damping, tolerance;
 } Newton;
 
-static void AssemblePiece(Newton *newton, PetscReal floor, PetscInt piece)
+static void AssemblePiece(const EqmLevelMap *map, PetscReal damping, PetscReal floor, PetscInt piece,
+                          EqmLevelSystem *system)
 {
-  const EqmLevelPieces *const pieces = &newton->system.cells;
+  const EqmLevelPieces *const pieces = &system->cells;
 
   for (PetscInt q = pieces->start[piece]; q < pieces->start[piece + 1]; q++) {
     EqmCellSystem s;
-    EqmBalanceCell(newton->map, pieces->item[q], newton->damping, floor, &s);
-    EqmLevelSystemAdd(&newton->system, pieces->item[q], s.matrix, s.right);
+    EqmBalanceCell(map, pieces->item[q], damping, floor, &s);
+    EqmLevelSystemAdd(system, pieces->item[q], s.matrix, s.right);
   }
 }
 
-/* The matrix at the present map. `success` is false where it is not definite. */
-static PetscErrorCode Assemble(Newton *newton, PetscReal residual, PetscBool *success)
+PetscErrorCode EqmBalanceAssemble(const EqmLevelMap *map, PetscReal damping, PetscReal residual, EqmLevelSystem *system,
+                                  PetscBool *success)
 {
   const PetscReal floor = .3 * PetscSqrtReal(residual), shift = 1e-10;
-  const EqmLevelPieces *const pieces = &newton->system.cells;
+  const EqmLevelPieces *const pieces = &system->cells;
 
   PetscFunctionBegin;
-  PetscCall(EqmLevelSystemClear(&newton->system));
+  PetscCall(EqmLevelSystemClear(system));
 #pragma omp parallel for schedule(dynamic) if (pieces->count > 1)
-  for (PetscInt k = 0; k < pieces->count; k++) AssemblePiece(newton, floor, k);
-  AssemblePiece(newton, floor, pieces->count); /* the cells between pieces */
-  PetscCall(EqmLevelSystemEnd(&newton->system, shift, success));
+  for (PetscInt k = 0; k < pieces->count; k++) AssemblePiece(map, damping, floor, k, system);
+  AssemblePiece(map, damping, floor, pieces->count, system); /* the cells between pieces */
+  PetscCall(EqmLevelSystemEnd(system, shift, success));
   PetscFunctionReturn(0);
 }
 
-static void CountUnknowns(const EqmLevelMap *map, unsigned char *count)
+PetscErrorCode EqmBalanceSystemCreate(const EqmLevelMap *map, EqmLevelSystem *system)
 {
+  unsigned char *count;
   PetscReal frame[6];
 
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(map->level->num_vertices, &count));
   for (PetscInt v = 0; v < map->level->num_vertices; v++)
     count[v] = (unsigned char)EqmMotionFrame((EqmMotion)map->motion[v], map->x + map->dim * v, frame);
+  PetscCall(EqmLevelSystemCreate(map->level, count, system));
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
 }
 
 /* Solve by multigrid, with prolongations at the present map. */
@@ -196,14 +203,10 @@ static PetscErrorCode MultigridSolve(Newton *newton, PetscBool *success)
   PetscFunctionReturn(0);
 }
 
-/* The map at length t along the step. */
-static PetscErrorCode Move(const Newton *newton, PetscReal t, PetscReal *to)
+void EqmBalanceMove(const EqmLevelMap *map, const PetscReal *step, PetscReal t, PetscReal *to)
 {
-  const EqmLevelMap *const map = newton->map;
   const PetscInt dim = map->dim;
-  const PetscReal *const step = newton->system.solution;
 
-  PetscFunctionBegin;
 #pragma omp parallel for schedule(static) if (map->level->num_vertices > LEAST_VERTICES)
   for (PetscInt v = 0; v < map->level->num_vertices; v++) {
     const EqmMotion motion = (EqmMotion)map->motion[v];
@@ -216,41 +219,38 @@ static PetscErrorCode Move(const Newton *newton, PetscReal t, PetscReal *to)
     }
     EqmRetract(motion, to + dim * v);
   }
-  PetscFunctionReturn(0);
 }
 
-/* Halve the step until the objective falls, and once more if that is better still. `t`: the step taken, 0: none. */
-static PetscErrorCode Search(Newton *newton, EqmLevelValue *value, PetscReal *t)
+PetscErrorCode EqmBalanceSearch(EqmLevelMap *map, const PetscReal *step, EqmBalanceEvaluate evaluate, void *context,
+                                EqmLevelValue *value, PetscReal *t)
 {
   enum { MOST_TRIALS = 12 };
-  EqmLevelMap *const map = newton->map;
   const PetscInt length = map->dim * map->level->num_vertices;
   EqmLevelValue best = *value;
-  PetscReal s = 1.;
+  PetscReal s = 1., *trial, *kept;
 
   PetscFunctionBegin;
+  PetscCall(PetscMalloc2(length, &trial, length, &kept));
   *t = 0.;
   for (PetscInt n = 0; n < MOST_TRIALS; n++, s *= .5) {
-    EqmLevelValue trial;
-    PetscCall(Move(newton, s, newton->trial[0]));
-    PetscCall(EqmLevelMapEvaluate(map, newton->trial[0], &trial));
-    if (trial.objective < best.objective) {
-      PetscReal *const swap = newton->trial[0];
-      newton->trial[0] = newton->trial[1];
-      newton->trial[1] = swap;
-      best = trial;
+    EqmLevelValue there;
+    EqmBalanceMove(map, step, s, trial);
+    PetscCall(evaluate(context, map, trial, &there));
+    if (there.objective < best.objective) {
+      PetscCall(PetscArraycpy(kept, trial, length));
+      best = there;
       *t = s;
     } else if (*t > 0.) {
       break;
     }
   }
-  if (*t > 0.) PetscCall(PetscArraycpy(map->x, newton->trial[1], length));
-  PetscCall(EqmLevelMapEvaluate(map, map->x, value));
+  if (*t > 0.) PetscCall(PetscArraycpy(map->x, kept, length));
+  PetscCall(PetscFree2(trial, kept));
+  PetscCall(evaluate(context, map, map->x, value));
   PetscFunctionReturn(0);
 }
 
-/* Less damping after whole steps, more after short ones. */
-static PetscReal NextDamping(PetscReal damping, PetscReal t)
+PetscReal EqmBalanceNextDamping(PetscReal damping, PetscReal t)
 {
   const PetscReal least = 1e-6;
 
@@ -259,35 +259,36 @@ static PetscReal NextDamping(PetscReal damping, PetscReal t)
   return t < .13 ? 31.6 * damping : 10. * damping;
 }
 
+static PetscErrorCode Evaluate(void *context, EqmLevelMap *map, const PetscReal *x, EqmLevelValue *value)
+{
+  PetscFunctionBegin;
+  (void)context;
+  PetscCall(EqmLevelMapEvaluate(map, x, value));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmBalanceLevel(EqmLevelMap *map, PetscInt coarser, const EqmBalanceOptions *options)
 {
-  const PetscInt n = map->level->num_vertices, length = map->dim * n;
   const PetscReal hopeless = 1e8;
   Newton newton = {.map = map, .coarser = coarser, .damping = options->damping, .tolerance = options->tolerance};
   EqmLevelValue value;
-  unsigned char *count;
 
   PetscFunctionBegin;
   PetscCall(EqmLevelMapEvaluate(map, map->x, &value));
-  PetscCall(PetscMalloc1(n, &count));
-  CountUnknowns(map, count);
-  PetscCall(EqmLevelSystemCreate(map->level, count, &newton.system));
-  PetscCall(PetscFree(count));
-  for (PetscInt k = 0; k < 2; k++) PetscCall(PetscMalloc1(length, &newton.trial[k]));
+  PetscCall(EqmBalanceSystemCreate(map, &newton.system));
   for (PetscInt k = 0; k < options->most_steps && value.folds == 0 && newton.damping < hopeless; k++) {
     const PetscReal before = value.objective;
     PetscReal t = 0.;
     PetscBool success;
-    PetscCall(Assemble(&newton, value.residual, &success));
+    PetscCall(EqmBalanceAssemble(map, newton.damping, value.residual, &newton.system, &success));
     if (success && coarser > 0)
       PetscCall(MultigridSolve(&newton, &success));
     else if (success)
       PetscCall(EqmLevelSystemFactorSolve(&newton.system, &success));
-    if (success) PetscCall(Search(&newton, &value, &t));
-    newton.damping = NextDamping(newton.damping, t);
+    if (success) PetscCall(EqmBalanceSearch(map, newton.system.solution, Evaluate, NULL, &value, &t));
+    newton.damping = EqmBalanceNextDamping(newton.damping, t);
     if (t >= .99 && before - value.objective < options->gain * before) break;
   }
-  for (PetscInt k = 0; k < 2; k++) PetscCall(PetscFree(newton.trial[k]));
   PetscCall(EqmLevelSystemDestroy(&newton.system));
   PetscFunctionReturn(0);
 }

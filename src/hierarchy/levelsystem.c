@@ -50,10 +50,11 @@ static PetscErrorCode MakePattern(EqmLevelSystem *system)
   PetscCall(EqmCornersCreate(n, level->num_cells, level->cells, &corners));
   for (PetscInt v = 0; v < n; v++) most = PetscMax(most, corners.start[v + 1] - corners.start[v]);
   PetscCall(PetscCalloc1(n, &seen));
-  PetscCall(PetscMalloc1(most + 2, &neighbour));
+  PetscCall(PetscMalloc1(2 * most + 1, &neighbour));
   PetscCall(PetscMalloc1(n + 1, &matrix->start));
   PetscCall(PetscMalloc1(n, &matrix->diagonal));
   PetscCall(PetscMalloc1(3 * level->num_cells + n + level->num_boundary, &matrix->column));
+  matrix->start[0] = 0;
   for (PetscInt v = 0; v < n; v++) {
     const PetscInt count = Neighbours(level, &corners, v, seen, neighbour);
     matrix->start[v] = at;

@@ -3,11 +3,7 @@
 
 enum { WIDTH = EQM_PROLONGATION_WIDTH, MOST_CANDIDATES = 10, MOST_SEEN = WIDTH * EQM_MOST_RECORD };
 
-/* Coarse vertices, by their numbers on the finer level, and their weights. */
-typedef struct {
-  PetscInt count, vertex[WIDTH];
-  PetscReal weight[WIDTH];
-} Row;
+typedef EqmProlongationRow Row;
 
 /* The place with a third coordinate: weights that give it back add up to one in the plane. */
 static void Lift(const EqmLevelMap *map, PetscInt v, PetscReal place[3])
@@ -129,19 +125,24 @@ static void BoundaryRow(const EqmLevelMap *map, const EqmCollapse *record, const
   *row = (Row){.count = 2, .vertex = {vertex[0], vertex[1]}, .weight = {share, 1. - share}};
 }
 
+void EqmProlongationRows(const EqmLevelMap *map, PetscInt begin, PetscInt end, Row *rows)
+{
+  const EqmHierarchyLevel *const level = map->level;
+
+  for (PetscInt k = end; k-- > begin;) {
+    const EqmCollapse *const record = &level->collapse[k];
+    (level->part[record->vertex] == EQM_INSIDE ? InsideRow : BoundaryRow)(map, record, rows, &rows[record->vertex]);
+  }
+}
+
 static PetscErrorCode MakeRows(const EqmLevelMap *finer, const EqmLevelMap *coarser, Row *rows)
 {
-  const EqmHierarchyLevel *const level = finer->level;
-
   PetscFunctionBegin;
   for (PetscInt c = 0; c < coarser->level->num_vertices; c++) {
     const PetscInt v = coarser->level->finer[c];
     rows[v] = (Row){.count = 1, .vertex = {v}, .weight = {1.}};
   }
-  for (PetscInt k = level->num_collapses; k-- > 0;) {
-    const EqmCollapse *const record = &level->collapse[k];
-    (level->part[record->vertex] == EQM_INSIDE ? InsideRow : BoundaryRow)(finer, record, rows, &rows[record->vertex]);
-  }
+  EqmProlongationRows(finer, 0, finer->level->num_collapses, rows);
   PetscFunctionReturn(0);
 }
 

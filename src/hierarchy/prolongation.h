@@ -16,6 +16,15 @@ typedef struct {
   PetscInt *start, *from; /* per coarse vertex: which of these are its */
 } EqmProlongation;
 
+/* A fine vertex as the mean of coarse ones, which are given by their numbers on the finer level. */
+typedef struct {
+  PetscInt count, vertex[EQM_PROLONGATION_WIDTH];
+  PetscReal weight[EQM_PROLONGATION_WIDTH];
+} EqmProlongationRow;
+/* Those of the vertices of the map's records begin .. end - 1, the last first, when all others of their rings have
+   theirs; a coarse vertex's is itself. Not collective. */
+PETSC_INTERN void EqmProlongationRows(const EqmLevelMap *map, PetscInt begin, PetscInt end, EqmProlongationRow *rows);
+
 /* The places of the coarser map must be those of the finer one. Not collective. */
 PETSC_INTERN PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap *coarser,
                                                   EqmProlongation *prolongation);

@@ -1,20 +1,8 @@
 /* The cascade on shared levels. */
 #include "hierarchy/sharedcascade.h"
-#include "hierarchy/sharedmap.h"
+#include "hierarchy/sharedbalance.h"
 #include "base/rows.h"
 #include <math.h>
-
-/* A map of a level whose places come from the finer one, or from the mesh, along `from_finer`. Collective. */
-static PetscErrorCode CreateMap(const EqmSharedLevel *shared, EqmCascadeTarget target, const PetscReal *finer,
-                                EqmLevelMap *map)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmLevelMapCreate(&shared->level, target, map));
-  PetscCall(EqmRowsToLeaves(shared->from_finer, map->dim, finer, map->x));
-  PetscCall(EqmSharedUpdateGhosts(shared, map->dim, map->x));
-  PetscCall(EqmLevelMapSetMotions(map, target));
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode Show(const EqmSharedLevel *shared, EqmLevelMap *map, const char *what, PetscInt count,
                            const EqmCascadeOptions *options)
@@ -31,19 +19,28 @@ static PetscErrorCode Show(const EqmSharedLevel *shared, EqmLevelMap *map, const
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RelaxLevel(const EqmSharedLevel *shared, EqmLevelMap *map, const EqmCascadeOptions *options)
+/* Level k, whose map has come back from the next coarser one. */
+static PetscErrorCode RelaxLevel(EqmShared shared, PetscInt k, EqmCascadeTarget target,
+                                 const EqmCascadeOptions *options, EqmLevelMap *map)
 {
+  enum { SWEEPS_AFTER = 2 };
+  const EqmBalanceOptions steps = {.most_steps = options->steps, .gain = 1e-2, .damping = .03, .tolerance = .1};
+  const EqmSharedLevel *const level = &shared->level[k];
   EqmSharedStars stars;
   EqmLevelValue value;
+  PetscInt iterations;
 
   PetscFunctionBegin;
-  PetscCall(EqmSharedStarsCreate(shared, &stars));
+  PetscCall(EqmSharedStarsCreate(level, &stars));
   for (PetscInt s = 0; s < options->sweeps; s += 2) {
-    PetscCall(EqmSharedEvaluate(shared, map, map->x, &value)); /* for its total */
-    PetscCall(EqmSharedRelax(shared, map, &stars, PetscMin(2, options->sweeps - s)));
+    PetscCall(EqmSharedEvaluate(level, map, map->x, &value)); /* for its total */
+    PetscCall(EqmSharedRelax(level, map, &stars, PetscMin(2, options->sweeps - s)));
   }
+  PetscCall(Show(level, map, "sweeps", options->sweeps, options));
+  PetscCall(EqmSharedBalance(shared, k, target, options->direct, &steps, map, &iterations));
+  PetscCall(Show(level, map, "cycles", iterations, options));
+  PetscCall(EqmSharedRelax(level, map, &stars, SWEEPS_AFTER));
   PetscCall(EqmSharedStarsDestroy(&stars));
-  PetscCall(Show(shared, map, "sweeps", options->sweeps, options));
   PetscFunctionReturn(0);
 }
 
@@ -91,7 +88,7 @@ PetscErrorCode EqmSharedCascade(EqmShared shared, EqmCascadeTarget target, const
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k <= last; k++)
-    PetscCall(CreateMap(&shared->level[k], target, k > 0 ? map[k - 1].x : x, &map[k]));
+    PetscCall(EqmSharedMapCreate(&shared->level[k], target, k > 0 ? map[k - 1].x : x, &map[k]));
   PetscCall(MapCoarsest(shared, &map[last], target, options));
   for (PetscInt k = last - 1; k >= 0; k--) {
     PetscInt hard;
@@ -99,7 +96,7 @@ PetscErrorCode EqmSharedCascade(EqmShared shared, EqmCascadeTarget target, const
     PetscCall(EqmLevelMapDestroy(&map[k + 1]));
     map[k].epsilon = k == 0 ? options->epsilon_finest : options->epsilon;
     PetscCall(Show(&shared->level[k], &map[k], "reinserted", hard, options));
-    PetscCall(RelaxLevel(&shared->level[k], &map[k], options));
+    PetscCall(RelaxLevel(shared, k, target, options, &map[k]));
   }
   result->before = INFINITY;
   PetscCall(TakeFinest(shared, &map[0], x, result));
@@ -114,11 +111,11 @@ PetscErrorCode EqmSharedCascadeRelax(EqmShared shared, EqmCascadeTarget target, 
   EqmLevelValue value;
 
   PetscFunctionBegin;
-  PetscCall(CreateMap(&shared->level[0], target, x, &map));
+  PetscCall(EqmSharedMapCreate(&shared->level[0], target, x, &map));
   map.epsilon = options->epsilon_finest;
   PetscCall(EqmSharedEvaluate(&shared->level[0], &map, map.x, &value));
   result->before = value.objective;
-  if (value.folds == 0) PetscCall(RelaxLevel(&shared->level[0], &map, options));
+  if (value.folds == 0) PetscCall(RelaxLevel(shared, 0, target, options, &map));
   PetscCall(TakeFinest(shared, &map, x, result));
   PetscCall(EqmLevelMapDestroy(&map));
   PetscFunctionReturn(0);

@@ -174,7 +174,8 @@ static PetscErrorCode TakeVertices(const EqmSharedSource *source, EqmSharedLevel
   PetscCall(PetscSFBcastEnd(to->halo, MPI_UNSIGNED_CHAR, level->part, level->part + to->num_owned, MPI_REPLACE));
   for (PetscInt v = 0; v < to->num_owned; v++) boundary += level->part[v] != EQM_INSIDE;
   PetscCall(MPIU_Allreduce(&boundary, &to->num_boundary, 1, MPIU_INT, MPI_SUM, to->comm));
-  for (PetscInt v = to->num_owned; v < level->num_vertices; v++) boundary += level->part[v] != EQM_INSIDE;
+  /* here: gaps in the triangles around vertices; each triangle around a ghost may be followed by one */
+  for (PetscInt k = 0; k < 3 * level->num_cells; k++) boundary += level->cells[k] >= to->num_owned;
   level->num_boundary = boundary;
   PetscFunctionReturn(0);
 }

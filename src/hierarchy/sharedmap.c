@@ -3,6 +3,17 @@
 #include "hierarchy/reinsert.h"
 #include "base/rows.h"
 
+PetscErrorCode EqmSharedMapCreate(const EqmSharedLevel *shared, EqmCascadeTarget target, const PetscReal *finer,
+                                  EqmLevelMap *map)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmLevelMapCreate(&shared->level, target, map));
+  PetscCall(EqmRowsToLeaves(shared->from_finer, map->dim, finer, map->x));
+  PetscCall(EqmSharedUpdateGhosts(shared, map->dim, map->x));
+  PetscCall(EqmLevelMapSetMotions(map, target));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmSharedEvaluate(const EqmSharedLevel *shared, EqmLevelMap *map, const PetscReal *x,
                                  EqmLevelValue *value)
 {

@@ -6,6 +6,9 @@
 #include "hierarchy/relax.h"
 #include "hierarchy/shared.h"
 
+/* A map of a shared level, whose places come from the finer level's, or the mesh's, owned vertices. Collective. */
+PETSC_INTERN PetscErrorCode EqmSharedMapCreate(const EqmSharedLevel *shared, EqmCascadeTarget target,
+                                               const PetscReal *finer, EqmLevelMap *map);
 /* The objective at x; sets `map->total`. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedEvaluate(const EqmSharedLevel *shared, EqmLevelMap *map, const PetscReal *x,
                                               EqmLevelValue *value);

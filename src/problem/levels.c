@@ -2,9 +2,6 @@
 #include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
 
-/* From several ranks no larger mesh is gathered on the first. */
-static const PetscInt most_gathered = 1000000;
-
 static EqmCascadeTarget TargetOf(EqmDomain domain)
 {
   if (domain->dim == 3) return EQM_TARGET_SPHERE;
@@ -31,7 +28,7 @@ PetscErrorCode EqmLevelsCreate(EqmProblem problem, EqmLevels *levels)
     corner[v] = (PetscBool)(EqmDomainMotion(domain, v) == &EqmMotionCorner);
   PetscCall(EqmHierarchyOptionsDefault(&options));
   options.corner = corner;
-  if (mesh->size > 1 && mesh->num_vertices > most_gathered)
+  if (mesh->size > 1 && mesh->num_vertices > options.gathered)
     PetscCall(EqmSharedCreate(mesh, &options, &levels->shared));
   else
     PetscCall(EqmHierarchyCreate(mesh, &options, &levels->hierarchy));
