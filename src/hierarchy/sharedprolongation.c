@@ -5,32 +5,10 @@
 
 enum { WIDTH = EQM_PROLONGATION_WIDTH };
 
-/* Blocks of rows, WIDTH each. */
-typedef struct {
-  PetscInt num_rows, *column;
-  EqmBlock *entry;
-} Rows;
-
-static PetscErrorCode RowsCreate(PetscInt num_rows, Rows *rows)
-{
-  PetscFunctionBegin;
-  rows->num_rows = num_rows;
-  PetscCall(PetscMalloc1(WIDTH * num_rows, &rows->column));
-  PetscCall(PetscMalloc1(WIDTH * num_rows, &rows->entry));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode RowsDestroy(Rows *rows)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFree(rows->column));
-  PetscCall(PetscFree(rows->entry));
-  PetscFunctionReturn(0);
-}
-
 /* Means of coarse vertices become blocks, in the directions that the vertices have; a direction that a coarse vertex
    lacks is its own, so that no diagonal entry of a coarser matrix is zero. `number`: of each coarse vertex. */
-static void SetRow(const EqmLevelMap *map, PetscInt v, const EqmProlongationRow *row, const PetscInt *number, Rows *to)
+static void SetRow(const EqmLevelMap *map, PetscInt v, const EqmProlongationRow *row, const PetscInt *number,
+                   EqmSharedRows *to)
 {
   const PetscInt dim = map->dim;
   PetscReal here[6], there[6];
@@ -53,22 +31,20 @@ static void SetRow(const EqmLevelMap *map, PetscInt v, const EqmProlongationRow 
   }
 }
 
-/* From the rows to a matrix. Collective. */
-static PetscErrorCode MakeMatrix(MPI_Comm comm, const Rows *rows, PetscInt num_columns, Mat *matrix)
+/* The next prolongation, whose rows are these. Collective. */
+static PetscErrorCode Append(MPI_Comm comm, const EqmSharedRows *rows, PetscInt num_coarse, EqmSharedProlongations *to)
 {
-  PetscInt *start;
-
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(rows->num_rows + 1, &start));
-  for (PetscInt i = 0; i <= rows->num_rows; i++) start[i] = WIDTH * i;
-  PetscCall(EqmSharedMatrix(comm, rows->num_rows, num_columns, start, rows->column, rows->entry, matrix));
-  PetscCall(PetscFree(start));
+  to->rows[to->num] = *rows;
+  to->num_coarse[to->num] = num_coarse;
+  PetscCall(EqmSharedRowsMatrix(comm, rows, num_coarse, &to->matrix[to->num]));
+  to->num++;
   PetscFunctionReturn(0);
 }
 
 /* Rows of all vertices that are of the map's first `num`: a coarse one's, whose number is not negative, is itself. */
 static PetscErrorCode FillRows(const EqmLevelMap *map, PetscInt num, PetscInt num_pieces, const PetscInt *record_start,
-                               const PetscInt *number, Rows *to)
+                               const PetscInt *number, EqmSharedRows *to)
 {
   EqmProlongationRow *rows;
 
@@ -85,10 +61,10 @@ static PetscErrorCode FillRows(const EqmLevelMap *map, PetscInt num, PetscInt nu
 
 /* Between two shared levels. Collective. */
 static PetscErrorCode BetweenShared(const EqmSharedLevel *finer, const EqmLevelMap *map, const EqmSharedLevel *coarser,
-                                    Mat *matrix)
+                                    EqmSharedProlongations *to)
 {
   PetscInt *number, *mine;
-  Rows rows;
+  EqmSharedRows rows;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(finer->num_owned, &number, coarser->num_owned, &mine));
@@ -96,22 +72,21 @@ static PetscErrorCode BetweenShared(const EqmSharedLevel *finer, const EqmLevelM
   for (PetscInt c = 0; c < coarser->num_owned; c++) mine[c] = coarser->first + c;
   PetscCall(PetscSFReduceBegin(coarser->from_finer, MPIU_INT, mine, number, MPI_REPLACE));
   PetscCall(PetscSFReduceEnd(coarser->from_finer, MPIU_INT, mine, number, MPI_REPLACE));
-  PetscCall(RowsCreate(finer->num_owned, &rows));
+  PetscCall(EqmSharedRowsCreate(finer->comm, finer->num_owned, WIDTH, &rows));
   PetscCall(FillRows(map, finer->num_owned, finer->num_pieces, finer->record_start, number, &rows));
-  PetscCall(MakeMatrix(finer->comm, &rows, coarser->num_owned, matrix));
-  PetscCall(RowsDestroy(&rows));
+  PetscCall(Append(finer->comm, &rows, coarser->num_owned, to));
   PetscCall(PetscFree2(number, mine));
   PetscFunctionReturn(0);
 }
 
 /* Rows on the first rank become those of the ranks that own the vertices. Collective. */
-static PetscErrorCode Deal(const EqmSharedLevel *shared, Rows *rows)
+static PetscErrorCode Deal(const EqmSharedLevel *shared, EqmSharedRows *rows)
 {
   PetscInt *number;
-  Rows dealt;
+  EqmSharedRows dealt;
 
   PetscFunctionBegin;
-  PetscCall(RowsCreate(shared->num_owned, &dealt));
+  PetscCall(EqmSharedRowsCreate(shared->comm, shared->num_owned, WIDTH, &dealt));
   PetscCall(PetscMalloc1(shared->num_owned, &number));
   for (PetscInt v = 0; v < shared->num_owned; v++) number[v] = shared->first + v;
   PetscCall(EqmFetchRows(shared->comm, rows->num_rows, shared->num_owned, number, MPIU_INT, WIDTH, rows->column,
@@ -119,7 +94,7 @@ static PetscErrorCode Deal(const EqmSharedLevel *shared, Rows *rows)
   PetscCall(EqmFetchRows(shared->comm, rows->num_rows, shared->num_owned, number, MPIU_REAL,
                          WIDTH * (PetscInt)(sizeof(EqmBlock) / sizeof(PetscReal)), rows->entry, dealt.entry));
   PetscCall(PetscFree(number));
-  PetscCall(RowsDestroy(rows));
+  PetscCall(EqmSharedRowsDestroy(rows));
   *rows = dealt;
   PetscFunctionReturn(0);
 }
@@ -127,23 +102,22 @@ static PetscErrorCode Deal(const EqmSharedLevel *shared, Rows *rows)
 /* Between two levels of the first rank: `map` and the next coarser, both empty elsewhere; the rows of the first of them
    are those of the last shared level, `shared`, else NULL. Collective. */
 static PetscErrorCode BetweenFirst(MPI_Comm comm, const EqmSharedLevel *shared, const EqmLevelMap *map, PetscBool here,
-                                   Mat *matrix)
+                                   EqmSharedProlongations *to)
 {
   const PetscInt n = here ? map->level->num_vertices : 0, m = here ? map[1].level->num_vertices : 0,
                  record_start[2] = {0, here ? map->level->num_collapses : 0};
   PetscInt *number;
-  Rows rows;
+  EqmSharedRows rows;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n, &number));
   for (PetscInt v = 0; v < n; v++) number[v] = -1;
   for (PetscInt c = 0; c < m; c++) number[map[1].level->finer[c]] = c;
-  PetscCall(RowsCreate(n, &rows));
+  PetscCall(EqmSharedRowsCreate(comm, n, WIDTH, &rows));
   if (here) PetscCall(FillRows(map, n, 1, record_start, number, &rows));
   PetscCall(PetscFree(number));
   if (shared) PetscCall(Deal(shared, &rows));
-  PetscCall(MakeMatrix(comm, &rows, m, matrix));
-  PetscCall(RowsDestroy(&rows));
+  PetscCall(Append(comm, &rows, m, to));
   PetscFunctionReturn(0);
 }
 
@@ -173,7 +147,7 @@ static PetscErrorCode GoOnBelow(EqmShared shared, EqmCascadeTarget target, const
   }
   for (PetscInt k = 0; k < num; k++)
     PetscCall(BetweenFirst(shared->comm, k == 0 ? &shared->level[shared->num_levels - 1] : NULL, &map[k], here,
-                           &prolongations->matrix[prolongations->num++]));
+                           prolongations));
   for (PetscInt k = 0; k <= num && here; k++) PetscCall(EqmLevelMapDestroy(&map[k]));
   PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
@@ -191,8 +165,7 @@ PetscErrorCode EqmSharedProlongationsCreate(EqmShared shared, PetscInt k, EqmCas
   prolongations->num = 0;
   for (PetscInt j = k; j < last; j++) {
     PetscCall(EqmSharedMapCreate(&shared->level[j + 1], target, at->x, &own[j + 1]));
-    PetscCall(
-        BetweenShared(&shared->level[j], at, &shared->level[j + 1], &prolongations->matrix[prolongations->num++]));
+    PetscCall(BetweenShared(&shared->level[j], at, &shared->level[j + 1], prolongations));
     at = &own[j + 1];
   }
   PetscCall(GoOnBelow(shared, target, at, direct, prolongations));
@@ -203,6 +176,9 @@ PetscErrorCode EqmSharedProlongationsCreate(EqmShared shared, PetscInt k, EqmCas
 PetscErrorCode EqmSharedProlongationsDestroy(EqmSharedProlongations *prolongations)
 {
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < prolongations->num; k++) PetscCall(MatDestroy(&prolongations->matrix[k]));
+  for (PetscInt k = 0; k < prolongations->num; k++) {
+    PetscCall(EqmSharedRowsDestroy(&prolongations->rows[k]));
+    PetscCall(MatDestroy(&prolongations->matrix[k]));
+  }
   PetscFunctionReturn(0);
 }

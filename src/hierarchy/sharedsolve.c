@@ -1,64 +1,21 @@
-/* Matrices of a shared level in PETSc's form, and its multigrid: Galerkin products, one sweep on each rank before and
+/* PETSc's multigrid on shared levels: Galerkin products, one sweep on each rank before and
    the transpose after. */
 #include "hierarchy/sharedsolve.h"
 
-/* A block row with ascending columns. Returns how many. */
-static PetscInt SortRow(PetscInt begin, PetscInt end, const PetscInt *column, PetscInt *place)
-{
-  PetscInt n = 0;
-
-  for (PetscInt q = begin; q < end; q++) {
-    PetscInt at = n;
-    if (column[q] < 0) continue;
-    for (; at > 0 && column[place[at - 1]] > column[q]; at--) place[at] = place[at - 1];
-    place[at] = q;
-    n++;
-  }
-  return n;
-}
-
-PetscErrorCode EqmSharedMatrix(MPI_Comm comm, PetscInt num_rows, PetscInt num_columns, const PetscInt *start,
-                               const PetscInt *column, const EqmBlock *entry, Mat *matrix)
-{
-  PetscInt *row, *col, *place, most = 0, at = 0;
-  PetscReal *value;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < num_rows; i++) most = PetscMax(most, start[i + 1] - start[i]);
-  PetscCall(PetscMalloc1(most, &place));
-  PetscCall(PetscMalloc3(2 * num_rows + 1, &row, 4 * start[num_rows], &col, 4 * start[num_rows], &value));
-  row[0] = 0;
-  for (PetscInt i = 0; i < num_rows; i++) {
-    const PetscInt n = SortRow(start[i], start[i + 1], column, place);
-    for (PetscInt k = 0; k < 2; k++) {
-      for (PetscInt q = 0; q < 2 * n; q++) {
-        const PetscReal e = entry[place[q / 2]].e[2 * k + q % 2];
-        if (e == 0.) continue;
-        col[at] = 2 * column[place[q / 2]] + q % 2;
-        value[at++] = e;
-      }
-      row[2 * i + k + 1] = at;
-    }
-  }
-  PetscCall(MatCreateMPIAIJWithArrays(comm, 2 * num_rows, 2 * num_columns, PETSC_DETERMINE, PETSC_DETERMINE, row, col,
-                                      value, matrix));
-  PetscCall(PetscFree3(row, col, value));
-  PetscCall(PetscFree(place));
-  PetscFunctionReturn(0);
-}
-
 /* The rows of this rank's vertices. Collective. */
-static PetscErrorCode SystemMatrix(const EqmSharedLevel *shared, const EqmLevelSystem *system, Mat *matrix)
+static PetscErrorCode SystemRows(const EqmSharedLevel *shared, const EqmLevelSystem *system, EqmSharedRows *rows)
 {
   const EqmBlockMatrix *const a = &system->matrix;
-  const PetscInt length = a->start[shared->num_owned];
-  PetscInt *column;
+  const PetscInt n = shared->num_owned, length = a->start[n];
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(length, &column));
-  for (PetscInt q = 0; q < length; q++) column[q] = EqmSharedGlobal(shared, a->column[q]);
-  PetscCall(EqmSharedMatrix(shared->comm, shared->num_owned, shared->num_owned, a->start, column, a->entry, matrix));
-  PetscCall(PetscFree(column));
+  *rows = (EqmSharedRows){.num_rows = n, .first = shared->first};
+  PetscCall(PetscMalloc1(n + 1, &rows->start));
+  PetscCall(PetscMalloc1(length, &rows->column));
+  PetscCall(PetscMalloc1(length, &rows->entry));
+  PetscCall(PetscArraycpy(rows->start, a->start, n + 1));
+  PetscCall(PetscArraycpy(rows->entry, a->entry, length));
+  for (PetscInt q = 0; q < length; q++) rows->column[q] = EqmSharedGlobal(shared, a->column[q]);
   PetscFunctionReturn(0);
 }
 
@@ -77,21 +34,37 @@ static PetscErrorCode SetSmoother(KSP smoother, MatSORType sweep)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SetMultigrid(PC pc, const EqmSharedProlongations *prolongations)
+/* `rows`: those of the system, which are freed; `finest`: as PETSc's matrix. Collective. */
+static PetscErrorCode SetMultigrid(MPI_Comm comm, PC pc, EqmSharedRows *rows, Mat finest,
+                                   const EqmSharedProlongations *prolongations)
 {
   const PetscInt num = prolongations->num;
+  Mat matrix = finest;
 
   PetscFunctionBegin;
   PetscCall(PCSetType(pc, PCMG));
   PetscCall(PCMGSetLevels(pc, num + 1, NULL));
-  PetscCall(PCMGSetGalerkin(pc, PC_MG_GALERKIN_BOTH));
-  for (PetscInt level = 1; level <= num; level++) {
+  PetscCall(PetscObjectReference((PetscObject)matrix));
+  for (PetscInt level = num; level >= 0; level--) {
+    const PetscInt k = num - level;
+    EqmSharedRows coarser;
     KSP before, after;
-    PetscCall(PCMGSetInterpolation(pc, level, prolongations->matrix[num - level]));
     PetscCall(PCMGGetSmootherDown(pc, level, &before));
-    PetscCall(PCMGGetSmootherUp(pc, level, &after));
-    PetscCall(SetSmoother(before, SOR_LOCAL_FORWARD_SWEEP));
-    PetscCall(SetSmoother(after, SOR_LOCAL_BACKWARD_SWEEP));
+    PetscCall(KSPSetOperators(before, matrix, matrix));
+    if (level > 0) {
+      PetscCall(PCMGSetInterpolation(pc, level, prolongations->matrix[k]));
+      PetscCall(PCMGGetSmootherUp(pc, level, &after));
+      PetscCall(KSPSetOperators(after, matrix, matrix));
+      PetscCall(SetSmoother(before, SOR_LOCAL_FORWARD_SWEEP));
+      PetscCall(SetSmoother(after, SOR_LOCAL_BACKWARD_SWEEP));
+    }
+    PetscCall(MatDestroy(&matrix));
+    if (level > 0)
+      PetscCall(EqmSharedGalerkin(comm, rows, &prolongations->rows[k], prolongations->num_coarse[k], &coarser));
+    PetscCall(EqmSharedRowsDestroy(rows));
+    if (level == 0) break;
+    *rows = coarser;
+    PetscCall(EqmSharedRowsMatrix(comm, rows, rows->num_rows, &matrix));
   }
   PetscFunctionReturn(0);
 }
@@ -102,13 +75,15 @@ PetscErrorCode EqmSharedSolve(const EqmSharedLevel *shared, EqmLevelSystem *syst
 {
   enum { MOST_ITERATIONS = 60 };
   KSPConvergedReason reason;
+  EqmSharedRows rows;
   Vec right, solution;
   Mat matrix;
   KSP ksp;
   PC pc;
 
   PetscFunctionBegin;
-  PetscCall(SystemMatrix(shared, system, &matrix));
+  PetscCall(SystemRows(shared, system, &rows));
+  PetscCall(EqmSharedRowsMatrix(shared->comm, &rows, shared->num_owned, &matrix));
   PetscCall(VecCreateMPIWithArray(shared->comm, 1, 2 * shared->num_owned, PETSC_DETERMINE, system->right, &right));
   PetscCall(
       VecCreateMPIWithArray(shared->comm, 1, 2 * shared->num_owned, PETSC_DETERMINE, system->solution, &solution));
@@ -118,7 +93,7 @@ PetscErrorCode EqmSharedSolve(const EqmSharedLevel *shared, EqmLevelSystem *syst
   PetscCall(KSPSetTolerances(ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, MOST_ITERATIONS));
   PetscCall(KSPSetOperators(ksp, matrix, matrix));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(SetMultigrid(pc, prolongations));
+  PetscCall(SetMultigrid(shared->comm, pc, &rows, matrix, prolongations));
   PetscCall(KSPSolve(ksp, right, solution));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   PetscCall(KSPGetIterationNumber(ksp, iterations));

@@ -4,12 +4,15 @@
 
 #include "hierarchy/levelsystem.h"
 #include "hierarchy/sharedmap.h"
+#include "hierarchy/sharedrows.h"
 
 /* Prolongations from each coarser level to the next finer one, the finest first: two rows per vertex that a rank owns,
    two columns per coarse one. Levels of the hierarchy that goes on below are the first rank's. */
 typedef struct {
   PetscInt num;
-  Mat matrix[2 * EQM_MOST_LEVELS];
+  EqmSharedRows rows[2 * EQM_MOST_LEVELS];
+  PetscInt num_coarse[2 * EQM_MOST_LEVELS]; /* coarse vertices that this rank owns */
+  Mat matrix[2 * EQM_MOST_LEVELS];          /* the same as `rows` */
 } EqmSharedProlongations;
 
 /* At a map of level k of the shared ones, down to a level of no more than `direct` vertices. Collective. */
@@ -24,11 +27,5 @@ PETSC_INTERN PetscErrorCode EqmSharedProlongationsDestroy(EqmSharedProlongations
 PETSC_INTERN PetscErrorCode EqmSharedSolve(const EqmSharedLevel *shared, EqmLevelSystem *system,
                                            const EqmSharedProlongations *prolongations, PetscReal tolerance,
                                            PetscInt *iterations, PetscBool *success);
-
-/* A matrix of two rows per block row and two columns per block column, of which this rank has num_rows and num_columns;
-   blocks of row i are start[i] .. start[i + 1] - 1, columns numbered over all ranks; -1: none. Collective. */
-PETSC_INTERN PetscErrorCode EqmSharedMatrix(MPI_Comm comm, PetscInt num_rows, PetscInt num_columns,
-                                            const PetscInt *start, const PetscInt *column, const EqmBlock *entry,
-                                            Mat *matrix);
 
 #endif
