@@ -95,18 +95,21 @@ PetscErrorCode EqmHierarchyDestroy(EqmHierarchy *hierarchy)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmHierarchyMemory(EqmHierarchy hierarchy, PetscInt64 *bytes)
+PetscInt64 EqmLevelMemory(const EqmHierarchyLevel *level)
 {
-  const size_t per_vertex = 3 * sizeof(PetscReal) + sizeof(unsigned char) + sizeof(PetscInt),
+  const size_t per_vertex = 3 * sizeof(PetscReal) + sizeof(unsigned char) + (level->finer ? sizeof(PetscInt) : 0),
                per_cell = 3 * sizeof(PetscInt) + sizeof(PetscReal), per_ring = sizeof(PetscInt) + sizeof(PetscReal);
 
+  return (PetscInt64)(per_vertex * level->num_vertices + per_cell * level->num_cells + per_ring * level->ring_length +
+                      sizeof(*level->collapse) * level->num_collapses);
+}
+
+PetscErrorCode EqmHierarchyMemory(EqmHierarchy hierarchy, PetscInt64 *bytes)
+{
   PetscFunctionBegin;
   *bytes = 0;
-  for (PetscInt k = 0; k < hierarchy->num_levels; k++) {
-    const EqmHierarchyLevel *const level = &hierarchy->level[k];
-    *bytes += (PetscInt64)(per_vertex * level->num_vertices + per_cell * level->num_cells +
-                           per_ring * level->ring_length + sizeof(*level->collapse) * level->num_collapses);
-  }
+  for (PetscInt k = 0; k < hierarchy->num_levels; k++) *bytes += EqmLevelMemory(&hierarchy->level[k]);
+  if (hierarchy->num_levels > 0) *bytes += (PetscInt64)sizeof(PetscInt) * hierarchy->level[0].num_vertices;
   PetscFunctionReturn(0);
 }
 

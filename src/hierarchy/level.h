@@ -67,6 +67,8 @@ PETSC_INTERN PetscErrorCode EqmHierarchyMakeLevels(EqmHierarchy hierarchy, const
                                                    PetscInt least_boundary);
 /* Give back what the records have of room beyond their number. Not collective. */
 PETSC_INTERN PetscErrorCode EqmLevelShrinkRecords(EqmHierarchyLevel *level);
+/* Bytes of its arrays. Not collective. */
+PETSC_INTERN PetscInt64 EqmLevelMemory(const EqmHierarchyLevel *level);
 /* Free its arrays. Not collective. */
 PETSC_INTERN PetscErrorCode EqmLevelReset(EqmHierarchyLevel *level);
 

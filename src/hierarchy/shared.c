@@ -129,3 +129,17 @@ PetscErrorCode EqmSharedDestroy(EqmShared *shared)
   PetscCall(PetscFree(*shared));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode EqmSharedMemory(EqmShared shared, PetscInt64 *bytes)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmHierarchyMemory(shared->coarser, bytes));
+  for (PetscInt k = 0; k < shared->num_levels; k++) {
+    const EqmSharedLevel *const here = &shared->level[k];
+    *bytes += EqmLevelMemory(&here->level);
+    *bytes += (PetscInt64)sizeof(PetscInt) * (here->level.num_vertices - here->num_owned);
+    *bytes += (PetscInt64)(sizeof(PetscSFNode) + sizeof(PetscInt)) * here->level.num_vertices; /* the star forests */
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bytes, 1, MPIU_INT64, MPI_SUM, shared->comm));
+  PetscFunctionReturn(0);
+}

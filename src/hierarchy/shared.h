@@ -41,6 +41,8 @@ struct _p_EqmShared {
 /* Share the mesh, a surface, and decimate it, then what is left on the first rank. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedCreate(EqmMesh mesh, const EqmHierarchyOptions *options, EqmShared *shared);
 PETSC_INTERN PetscErrorCode EqmSharedDestroy(EqmShared *shared);
+/* Bytes that the levels take on all ranks, those of the first rank's own included. Collective. */
+PETSC_INTERN PetscErrorCode EqmSharedMemory(EqmShared shared, PetscInt64 *bytes);
 
 /* ---- for the files of this folder */
 /* What a level is made of: the mesh, or what is left of the finer level. */

@@ -136,6 +136,7 @@ static PetscErrorCode TestLevels(const char *shape, PetscInt n, PetscInt euler, 
   PetscBool *corner;
   EqmHierarchyLevel finer, level;
   PetscReal worst = 0.;
+  PetscInt64 bytes;
   PetscInt kept = 0;
 
   PetscFunctionBegin;
@@ -145,6 +146,8 @@ static PetscErrorCode TestLevels(const char *shape, PetscInt n, PetscInt euler, 
   for (PetscInt v = 0; v < test.mesh->num_owned; v++) kept += corner[v] && test.mesh->on_boundary[v];
   kept = (PetscInt)TestSum(PETSC_COMM_WORLD, (PetscReal)kept);
   PetscCall(Make(test.mesh, corner, &shared));
+  PetscCall(EqmSharedMemory(shared, &bytes));
+  CHECK(bytes <= 400 * test.mesh->num_vertices, "%g bytes per vertex", (double)bytes / test.mesh->num_vertices);
   CHECK(shared->num_levels > 2, "%d levels of %s", (int)shared->num_levels, shape);
   for (PetscInt k = 0; k < shared->num_levels; k++) {
     const EqmSharedLevel *const here = &shared->level[k];
