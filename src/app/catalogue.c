@@ -109,11 +109,13 @@ static PetscErrorCode Note(MPI_Comm comm, const char format[], ...)
   EqmOption *const last = c->num_options ? &c->option[c->num_options - 1] : NULL;
   char text[LONGEST];
   va_list arguments;
+  PetscErrorCode error;
 
   PetscFunctionBegin;
   va_start(arguments, format);
-  PetscCall(PetscVSNPrintf(text, sizeof(text), format, NULL, arguments));
+  error = PetscVSNPrintf(text, sizeof(text), format, NULL, arguments);
   va_end(arguments);
+  PetscCall(error);
   if (!strncmp(text, rule, strlen(rule))) {
     PetscCall(AddSection(text + strlen(rule), strcspn(text + strlen(rule), ":\n")));
   } else if (!strncmp(text, "  -", 3)) {

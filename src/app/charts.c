@@ -2,6 +2,7 @@
 #include "mesh/soup_private.h"
 #include "pieces.h"
 #include "store/map_private.h"
+#include "base/sort.h"
 
 /* Where the square around an image lies. */
 typedef struct {
@@ -70,7 +71,7 @@ PetscErrorCode EqmPiecesCharts(const EqmPieces *pieces, EqmMap *charts)
     if (!pieces->piece[p].message[0])
       chart[n++] = (Chart){.number = p + 1, .side = PetscSqrtReal(pieces->piece[p].measure)};
   }
-  qsort(chart, (size_t)n, sizeof(*chart), CompareCharts);
+  EqmSort(chart, (size_t)n, sizeof(*chart), CompareCharts);
   scale = Pack(n, chart);
   for (PetscInt i = 0; i < n; i++) place[chart[i].number] = i;
   for (PetscInt k = 0; k < 2 * count; k++) least = PetscMin(least, pieces->map->coordinates[k]);

@@ -109,10 +109,13 @@ PetscErrorCode EqmInitialize(int *argc, char ***argv)
 
 PetscErrorCode EqmFinalize(void)
 {
+  PetscBool traces_memory;
+
   PetscFunctionBegin;
   EqmForgetEnds();
   EqmAtomicAbandonAll(); /* of functions that have failed */
-  PetscCall(PetscPopErrorHandler());
+  PetscCall(PetscMallocGetDebug(&traces_memory, NULL, NULL));
+  if (!traces_memory) PetscCall(PetscPopErrorHandler()); /* it is older than the tracing, which takes it for a fault */
   PetscCall(PetscFinalize());
   return 0;
 }

@@ -3,6 +3,7 @@
 #include "hierarchy/gather.h"
 #include "mesh/mesh_private.h"
 #include "base/rows.h"
+#include "base/sort.h"
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -44,7 +45,7 @@ static void SortVertices(PetscInt n, const PetscReal *position, const PetscInt *
     items[v] = (Item){.key = 0, .input = input[v], .at = v};
     for (PetscInt c = 0; c < 3; c++) items[v].key |= Spread((uint64_t)((position[3 * v + c] - low[c]) * scale)) << c;
   }
-  qsort(items, n, sizeof(*items), CompareItems);
+  EqmSort(items, n, sizeof(*items), CompareItems);
 }
 
 /* All rows of an array that is dealt to the ranks, on the first rank. Collective. */
@@ -116,7 +117,7 @@ static PetscErrorCode GatherCells(EqmMesh mesh, const PetscInt *number, EqmHiera
     const PetscInt *const v = all + 3 * c;
     items[c] = (Item){.key = (uint64_t)PetscMin(v[0], PetscMin(v[1], v[2])), .input = input[c], .at = c};
   }
-  qsort(items, m, sizeof(*items), CompareItems);
+  EqmSort(items, m, sizeof(*items), CompareItems);
   PetscCall(PetscMalloc1(3 * m, &level->cells));
   PetscCall(PetscMalloc1(m, &level->weight));
   level->num_cells = m;

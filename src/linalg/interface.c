@@ -3,6 +3,7 @@
    every sum fixed in advance. */
 #include "linalg/interface_private.h"
 #include "base/narrow.h"
+#include "base/sort.h"
 
 enum { MOST_LEVELS = 32 };
 
@@ -51,7 +52,7 @@ static PetscErrorCode MergeRecords(EqmFront *front, PetscInt *const record[2], P
   PetscCall(PetscMalloc1(RECORD * total, merged));
   PetscCall(PetscArraycpy(all, record[0], RECORD * front->num_from[0]));
   PetscCall(PetscArraycpy(all + RECORD * front->num_from[0], record[1], RECORD * front->num_from[1]));
-  qsort(all, (size_t)total, RECORD * sizeof(PetscInt), CompareRecords);
+  EqmSort(all, (size_t)total, RECORD * sizeof(PetscInt), CompareRecords);
   for (int out = 1; out >= 0; out--) {
     for (PetscInt k = 0; k < total; k++) {
       const PetscInt *const r = all + RECORD * k;
@@ -75,8 +76,8 @@ static PetscErrorCode FindPlaces(EqmFront *front, int group, const PetscInt *rec
   for (PetscInt k = 0; k < front->num_from[group]; k++) {
     const PetscInt *const r = record + RECORD * k;
     const int kept = !(r[1] >= front->low && r[2] < front->high);
-    const PetscInt *const found = bsearch(r, merged + RECORD * begin[kept], (size_t)(begin[kept + 1] - begin[kept]),
-                                          RECORD * sizeof(PetscInt), CompareRecords);
+    const PetscInt *const found = EqmSearch(r, merged + RECORD * begin[kept], (size_t)(begin[kept + 1] - begin[kept]),
+                                            RECORD * sizeof(PetscInt), CompareRecords);
     front->place[group][k] = (PetscInt)(found - merged) / RECORD;
   }
   PetscFunctionReturn(0);

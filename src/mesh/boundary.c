@@ -1,6 +1,7 @@
 /* The boundary: its facets, its vertices, and for a disk-type surface the order and arc length of its loop. */
 #include "mesh/build.h"
 #include "base/narrow.h"
+#include "base/sort.h"
 #include "mesh/mesh_private.h"
 
 /* The facet opposite a corner, oriented as the boundary of a positively oriented cell. */
@@ -165,10 +166,10 @@ static PetscErrorCode OrderLoop(PetscInt n, const LoopEdge *edge, LoopPlace *tai
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(n, &sorted, n, &walked));
   PetscCall(PetscArraycpy(sorted, edge, n));
-  qsort(sorted, (size_t)n, sizeof(LoopEdge), CompareTails);
+  EqmSort(sorted, (size_t)n, sizeof(LoopEdge), CompareTails);
   PetscCall(WalkLoop(n, sorted, walked, closed));
   for (PetscInt e = 0; e < n; e++) {
-    const LoopEdge *const found = bsearch(&edge[e], sorted, (size_t)n, sizeof(LoopEdge), CompareTails);
+    const LoopEdge *const found = EqmSearch(&edge[e], sorted, (size_t)n, sizeof(LoopEdge), CompareTails);
     tail_at[e] = walked[found - sorted];
   }
   PetscCall(PetscFree2(sorted, walked));

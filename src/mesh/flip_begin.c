@@ -3,6 +3,7 @@
 #include "mesh/soup_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
+#include "base/sort.h"
 
 typedef struct {
   PetscInt low, high, rank, triangle, corner;
@@ -57,7 +58,7 @@ PetscErrorCode EqmFlipperNumberEdges(EqmFlipper *f)
   }
   PetscCall(EqmExchangeBytes(f->comm, n, sizeof(*half), destination, half, &num_received, &received));
   PetscCall(PetscFree2(half, destination));
-  qsort(received, (size_t)num_received, sizeof(HalfEdge), CompareHalfEdges);
+  EqmSort(received, (size_t)num_received, sizeof(HalfEdge), CompareHalfEdges);
   PetscCall(PetscMalloc2(num_received, &name, num_received, &destination));
   for (PetscInt k = 0; k < num_received; k++) {
     if (k == 0 || CompareHalfEdges(&received[k], &received[k - 1])) f->num_edges++;

@@ -1,6 +1,7 @@
 #include "mesh/handles.h"
 #include "mesh/soup_private.h"
 #include "base/sets.h"
+#include "base/sort.h"
 #include <string.h>
 
 enum { NUM_ROOTS = 4 };
@@ -53,7 +54,7 @@ static PetscErrorCode MakeEdges(Graph *graph)
       edge[count++] = (Edge){PetscMin(p, q), PetscMax(p, q), {c, -1}};
     }
   }
-  qsort(edge, (size_t)count, sizeof(Edge), CompareEdges);
+  EqmSort(edge, (size_t)count, sizeof(Edge), CompareEdges);
   for (PetscInt k = 0; k < count; k++) {
     Edge *const last = kept ? &edge[kept - 1] : NULL;
 

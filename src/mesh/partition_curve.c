@@ -3,6 +3,7 @@
 #include "mesh/build.h"
 #include "mesh/soup_private.h"
 #include "base/curve.h"
+#include "base/sort.h"
 #include <stdlib.h>
 
 PetscErrorCode EqmPartitionAlongCurve(EqmSoup soup, PetscInt *owner_of_slab)
@@ -19,7 +20,7 @@ PetscErrorCode EqmPartitionAlongCurve(EqmSoup soup, PetscInt *owner_of_slab)
   PetscCall(EqmCurveBox(soup->comm, n, soup->vertices, &cube));
   for (PetscInt v = 0; v < n; v++)
     place[v] = (EqmCurvePlace){.key = EqmCurveKey(&cube, soup->vertices + 3 * v), .number = soup->vertex_start + v};
-  qsort(place, (size_t)n, sizeof(*place), EqmCurveCompare);
+  EqmSort(place, (size_t)n, sizeof(*place), EqmCurveCompare);
   for (PetscMPIInt p = 0; p < size - 1; p++) before[p] = (PetscInt64)soup->num_vertices * (p + 1) / size;
   PetscCall(EqmCurveCut(soup->comm, n, place, size - 1, before, cut));
   for (PetscInt k = 0, p = 0; k < n; k++) {

@@ -3,6 +3,7 @@
 #include "mesh/mesh_private.h"
 #include "base/exchange.h"
 #include "base/rows.h"
+#include "base/sort.h"
 
 /* Who is who on the surface. */
 typedef struct {
@@ -61,7 +62,7 @@ static PetscErrorCode CollectTriangles(EqmMesh solid, const Numbering *numbering
     count++;
   }
   PetscCall(EqmExchange(solid->comm, count, 3, destination, records, num_cells, cells));
-  qsort(*cells, (size_t)*num_cells, 3 * sizeof(PetscInt), CompareTriangles);
+  EqmSort(*cells, (size_t)*num_cells, 3 * sizeof(PetscInt), CompareTriangles);
   PetscCall(PetscFree3(number, records, destination));
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,6 @@
 /* Colours: scales for values, patterns for maps. All stay apart for colour-blind eyes. */
 #include "picture/picture.h"
+#include "base/sort.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -44,7 +45,7 @@ static double LargeDeviation(EqmScaleKind kind, const PetscReal *values, PetscIn
   for (PetscInt j = 0; j < count && taken < 2 * SAMPLES; j += step) {
     if (values[j] > 0.0) deviation[taken++] = kind == EQM_SCALE_DISTANCE ? values[j] : fabs(log(values[j]));
   }
-  qsort(deviation, (size_t)taken, sizeof(deviation[0]), CompareDoubles);
+  EqmSort(deviation, (size_t)taken, sizeof(deviation[0]), CompareDoubles);
   return taken ? deviation[(int)(0.95 * (taken - 1))] : 0.0;
 }
 

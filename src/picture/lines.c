@@ -1,6 +1,7 @@
 /* Lines on a mesh that pictures show on the surface and on its image: curves that the user names, and sharp edges. */
 #include "picture/picture.h"
 #include "format/table.h"
+#include "base/sort.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -84,7 +85,7 @@ static PetscErrorCode FindSharp(const EqmResult *result, PetscReal degrees, Pets
     const PetscInt a = faces.vertices[k], b = faces.vertices[k % 3 == 2 ? k - 2 : k + 1];
     edges[k] = (Edge){PetscMin(a, b), PetscMax(a, b), k / 3};
   }
-  qsort(edges, 3 * (size_t)faces.num_faces, sizeof(Edge), CompareEdges);
+  EqmSort(edges, 3 * (size_t)faces.num_faces, sizeof(Edge), CompareEdges);
   for (PetscInt k = 1; k < 3 * faces.num_faces; k++) {
     double n[3], m[3];
     if (CompareEdges(&edges[k - 1], &edges[k])) continue;

@@ -2,6 +2,7 @@
    sees its whole surface; others are left. The boundary is gathered on rank 0, if there are cavities at all. */
 #include "base/exchange.h"
 #include "base/sets.h"
+#include "base/sort.h"
 #include "geometry/simplex.h"
 #include "mesh/soup_private.h"
 #include "prepare/step.h"
@@ -75,7 +76,7 @@ static PetscErrorCode NumberSurfaces(Boundary *boundary)
   PetscReal largest = -1., *box;
 
   PetscFunctionBegin;
-  qsort(boundary->face, (size_t)n, sizeof(Face), CompareFaces);
+  EqmSort(boundary->face, (size_t)n, sizeof(Face), CompareFaces);
   PetscCall(PetscMalloc1(n, &boundary->surface));
   PetscCall(PetscMalloc3(count, &number, count, &set, count, &label));
   for (PetscInt k = 0; k < count; k++) number[k] = boundary->face[k / 3].vertex[k % 3];

@@ -1,6 +1,7 @@
 /* Mend flat triangles: they and all that touches them, which is little, are gathered on one rank. */
 #include "prepare/flat.h"
 #include "base/exchange.h"
+#include "base/sort.h"
 #include "mesh/soup_private.h"
 
 /* Mark the vertices of flat triangles, ghosts included; false: there is none. */
@@ -56,7 +57,7 @@ static PetscErrorCode GatherPatch(const EqmVicinity *vicinity, const PetscBool *
   }
   PetscCall(PetscCalloc1(count, &destination));
   PetscCall(EqmExchangeBytes(vicinity->comm, count, sizeof(*mine), destination, mine, &num, &all));
-  qsort(all, (size_t)num, sizeof(*all), CompareRecords);
+  EqmSort(all, (size_t)num, sizeof(*all), CompareRecords);
   PetscCall(EqmFlatPatchCreate(num, all, patch));
   PetscCall(PetscFree(destination));
   PetscCall(PetscFree(mine));

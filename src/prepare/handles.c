@@ -3,6 +3,7 @@
 #include "prepare/step.h"
 #include "mesh/soup_private.h"
 #include "mesh/handles.h"
+#include "base/sort.h"
 #include <string.h>
 
 /* A mesh that is being cut: more cells and vertices than at first. */
@@ -114,7 +115,7 @@ static PetscErrorCode FindChords(const Surgery *s, PetscInt n, PetscInt *num_cho
       count++;
     }
   }
-  qsort(*chord, (size_t)count, sizeof(**chord), EqmComparePairs);
+  EqmSort(*chord, (size_t)count, sizeof(**chord), EqmComparePairs);
   *num_chords = count;
   PetscFunctionReturn(0);
 }
@@ -169,7 +170,7 @@ static PetscErrorCode CutAndFill(Surgery *s, PetscInt n, const PetscInt *loop, P
     chord[k][0] = n - 1 - chord[k][1];
     chord[k][1] = n - 1 - low;
   }
-  qsort(chord, (size_t)num_chords, sizeof(*chord), EqmComparePairs);
+  EqmSort(chord, (size_t)num_chords, sizeof(*chord), EqmComparePairs);
   PetscCall(AddPatch(s, n, ring, num_chords, (const PetscInt(*)[2])chord));
   PetscCall(PetscFree(ring));
   PetscCall(PetscFree(chord));

@@ -3,6 +3,7 @@
 #include "mesh/soup_private.h"
 #include "base/narrow.h"
 #include "base/rows.h"
+#include "base/sort.h"
 #include "geometry/simplex.h"
 
 typedef struct {
@@ -63,7 +64,7 @@ static PetscErrorCode ListPieces(const EqmVicinity *vicinity, const PetscInt *la
   *num_pieces = starts[vicinity->size] / (PetscInt)sizeof(Piece);
   PetscCall(PetscMalloc1(*num_pieces, all));
   PetscCallMPI(MPI_Allgatherv(mine, counts[vicinity->rank], MPI_BYTE, *all, counts, starts, MPI_BYTE, vicinity->comm));
-  qsort(*all, (size_t)*num_pieces, sizeof(Piece), ComparePieces);
+  EqmSort(*all, (size_t)*num_pieces, sizeof(Piece), ComparePieces);
   PetscCall(PetscFree2(measure, mine));
   PetscCall(PetscFree2(counts, starts));
   PetscFunctionReturn(0);

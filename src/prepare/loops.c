@@ -1,6 +1,7 @@
 /* Boundary loops, which are short, on one rank. */
 #include "prepare/loops.h"
 #include "base/exchange.h"
+#include "base/sort.h"
 
 static int CompareTails(const void *a, const void *b)
 {
@@ -53,7 +54,7 @@ PetscErrorCode EqmBoundaryGather(const EqmVicinity *vicinity, EqmBoundary *bound
                              &boundary->edge));
   PetscCall(EqmExchange(vicinity->comm, num_chords, 2, destination, chord, &boundary->num_chords,
                         (PetscInt **)&boundary->chord));
-  qsort(boundary->edge, (size_t)boundary->num_edges, sizeof(*boundary->edge), CompareTails);
+  EqmSort(boundary->edge, (size_t)boundary->num_edges, sizeof(*boundary->edge), CompareTails);
   PetscCall(PetscFree(destination));
   PetscCall(PetscFree(chord));
   PetscCall(PetscFree2(on_boundary, edge));
@@ -65,7 +66,7 @@ static PetscInt FindTail(const EqmBoundary *boundary, PetscInt vertex)
 {
   const EqmBoundaryEdge key = {.tail = vertex};
   const EqmBoundaryEdge *const found =
-      bsearch(&key, boundary->edge, (size_t)boundary->num_edges, sizeof(key), CompareTails);
+      EqmSearch(&key, boundary->edge, (size_t)boundary->num_edges, sizeof(key), CompareTails);
 
   return found ? (PetscInt)(found - boundary->edge) : -1;
 }
@@ -192,7 +193,7 @@ PetscErrorCode EqmBoundaryChords(const EqmBoundary *boundary, PetscInt n, const 
     chord[*num_chords][0] = PetscMin(place[ends[0]], place[ends[1]]);
     chord[(*num_chords)++][1] = PetscMax(place[ends[0]], place[ends[1]]);
   }
-  qsort(chord, (size_t)*num_chords, sizeof(*chord), EqmComparePairs);
+  EqmSort(chord, (size_t)*num_chords, sizeof(*chord), EqmComparePairs);
   for (PetscInt k = 0; k < n; k++) place[boundary->same[loop[k]]] = -1;
   PetscFunctionReturn(0);
 }

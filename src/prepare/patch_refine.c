@@ -3,6 +3,7 @@
    mean of their neighbours. */
 #include "prepare/step.h"
 #include "geometry/simplex.h"
+#include "base/sort.h"
 
 /* Triangles grow towards the middle, so that a loop of n edges takes not n^2 of them. */
 #define GROWTH 1.2
@@ -41,7 +42,7 @@ static PetscErrorCode SortHalfEdges(const EqmPatch *patch, HalfEdge **half)
     const PetscInt *const v = patch->triangle + 3 * (k / 3), p = v[(k + 1) % 3], q = v[(k + 2) % 3];
     (*half)[k] = (HalfEdge){PetscMin(p, q), PetscMax(p, q), k / 3, k % 3};
   }
-  qsort(*half, (size_t)n, sizeof(HalfEdge), CompareHalfEdges);
+  EqmSort(*half, (size_t)n, sizeof(HalfEdge), CompareHalfEdges);
   PetscFunctionReturn(0);
 }
 
@@ -76,7 +77,7 @@ static PetscBool FlipEdge(EqmPatch *patch, const HalfEdge *half, const HalfEdge 
     return PETSC_FALSE;
   if (Cotangent(x + 3 * a, x + 3 * b, x + 3 * c) + Cotangent(x + 3 * a, x + 3 * b, x + 3 * d) >= -1e-9)
     return PETSC_FALSE;
-  if (bsearch(&other, half, (size_t)(3 * patch->num_triangles), sizeof(HalfEdge), CompareEnds)) return PETSC_FALSE;
+  if (EqmSearch(&other, half, (size_t)(3 * patch->num_triangles), sizeof(HalfEdge), CompareEnds)) return PETSC_FALSE;
   if (PetscMax(c, d) < patch->num_boundary && EqmPatchIsForbidden(c, d, num_forbidden, forbidden)) return PETSC_FALSE;
   used_triangle[first[0].triangle] = used_triangle[first[1].triangle] = PETSC_TRUE;
   used_vertex[c] = used_vertex[d] = PETSC_TRUE;

@@ -4,6 +4,7 @@
 #include "base/exchange.h"
 #include "base/rows.h"
 #include "base/sets.h"
+#include "base/sort.h"
 
 /* A boundary vertex on rank 0, which gets all of them: few beside those of the mesh. */
 typedef struct {
@@ -29,7 +30,7 @@ static PetscErrorCode JoinPoints(PetscInt n, Point *point, PetscReal distance, P
   PetscInt *set, *lowest;
 
   PetscFunctionBegin;
-  if (n > 0) qsort(point, (size_t)n, sizeof(Point), ComparePlaces); /* not NULL */
+  if (n > 0) EqmSort(point, (size_t)n, sizeof(Point), ComparePlaces); /* not NULL */
   PetscCall(PetscMalloc2(n, &set, n, &lowest));
   for (PetscInt i = 0; i < n; i++) {
     set[i] = i;

@@ -1,5 +1,6 @@
 /* The crossings of the curve between two hemispheres, by their edges. */
 #include "start/hemispheres.h"
+#include "base/sort.h"
 #include <stdlib.h>
 
 static int CompareEdges(const PetscInt a[2], const PetscInt b[2])
@@ -16,10 +17,10 @@ static int CompareCrossings(const void *a, const void *b)
 EqmCrossing *EqmCutFindCrossing(const EqmCut *cut, PetscInt below, PetscInt above)
 {
   const EqmCrossing wanted = {.from = {below, above}};
-  return bsearch(&wanted, cut->crossing, (size_t)cut->count, sizeof(EqmCrossing), CompareCrossings);
+  return EqmSearch(&wanted, cut->crossing, (size_t)cut->count, sizeof(EqmCrossing), CompareCrossings);
 }
 
 void EqmCutSort(EqmCut *cut)
 {
-  qsort(cut->crossing, (size_t)cut->count, sizeof(EqmCrossing), CompareCrossings);
+  EqmSort(cut->crossing, (size_t)cut->count, sizeof(EqmCrossing), CompareCrossings);
 }

@@ -5,6 +5,7 @@
    the last round all of them. */
 #include "unfold/unfold.h"
 #include "mesh/mesh_private.h"
+#include "base/sort.h"
 
 enum { MOST_ROUNDS = 30 };
 static const PetscReal least_weight = 1e-2; /* of an edge; between equilateral triangles it is 1/sqrt(3) */
@@ -36,7 +37,7 @@ static void SortSides(EqmMesh mesh, Side *side)
     const PetscInt *const v = mesh->cells + 3 * (k / 3), p = v[(k + 1) % 3], q = v[(k + 2) % 3];
     side[k] = (Side){PetscMin(p, q), PetscMax(p, q), k};
   }
-  qsort(side, (size_t)n, sizeof(Side), CompareSides);
+  EqmSort(side, (size_t)n, sizeof(Side), CompareSides);
 }
 
 /* Raise the weights of edges with a marked end. Not collective. */
