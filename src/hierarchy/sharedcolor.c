@@ -2,6 +2,7 @@
    of higher priority has. Priorities belong to the vertices, so that the colours do not depend on the ranks. */
 #include "hierarchy/sharedmap.h"
 #include "base/random.h"
+#include "base/sort.h"
 #include <stdlib.h>
 
 typedef struct {
@@ -59,7 +60,7 @@ PetscErrorCode EqmSharedColor(const EqmSharedLevel *shared, const EqmLevelStars 
   for (PetscInt v = 0; v < shared->num_owned; v++) {
     if (border[v]) priority[num++] = PriorityOf(shared, v);
   }
-  qsort(priority, (size_t)num, sizeof(*priority), Compare);
+  EqmSort(priority, (size_t)num, sizeof(*priority), Compare);
   for (PetscInt v = 0; v < shared->level.num_vertices; v++) color[v] = -1;
   do {
     PetscInt kept = 0;

@@ -2,6 +2,7 @@
 #include "hierarchy/shared.h"
 #include "base/exchange.h"
 #include "base/rows.h"
+#include "base/sort.h"
 #include <stdlib.h>
 
 /* A cell on its way: its corners' numbers along the curve. */
@@ -97,7 +98,7 @@ static PetscErrorCode SortCells(const EqmSharedLevel *to, PetscInt num, Cell *ce
   for (PetscInt k = 0; k < to->num_owned + 1; k++) begin[k + 2] += begin[k + 1];
   for (PetscInt c = 0; c < num; c++) sorted[begin[lowest[c] + 1]++] = cells[c];
   for (PetscInt k = 0; k < to->num_owned + 1; k++)
-    qsort(sorted + begin[k], (size_t)(begin[k + 1] - begin[k]), sizeof(*sorted), CompareCells);
+    EqmSort(sorted + begin[k], (size_t)(begin[k + 1] - begin[k]), sizeof(*sorted), CompareCells);
   PetscCall(PetscArraycpy(cells, sorted, num));
   PetscCall(PetscFree2(lowest, sorted));
   *begin_of = begin;

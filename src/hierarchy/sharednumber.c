@@ -2,6 +2,7 @@
 #include "hierarchy/shared.h"
 #include "base/curve.h"
 #include "base/exchange.h"
+#include "base/sort.h"
 #include <stdlib.h>
 
 /* A vertex on its way: its place, and where it comes from. */
@@ -50,7 +51,7 @@ static PetscErrorCode MakeTravellers(const EqmSharedSource *source, PetscInt whe
                     .rank = rank,
                     .index = v};
   }
-  qsort(traveller, (size_t)*num, sizeof(*traveller), EqmCurveCompare);
+  EqmSort(traveller, (size_t)*num, sizeof(*traveller), EqmCurveCompare);
   *out = traveller;
   PetscFunctionReturn(0);
 }
@@ -74,7 +75,7 @@ static PetscErrorCode Travel(const EqmSharedSource *source, PetscMPIInt size, co
   }
   PetscCall(EqmExchangeBytes(source->comm, num, sizeof(*traveller), to, traveller, num_arrived, arrived));
   PetscCall(PetscFree4(place, to, cut, before));
-  qsort(*arrived, (size_t)*num_arrived, sizeof(**arrived), EqmCurveCompare);
+  EqmSort(*arrived, (size_t)*num_arrived, sizeof(**arrived), EqmCurveCompare);
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,6 @@
 /* A piece is taken out of its level, decimated, and put back. */
 #include "hierarchy/sharedpiece.h"
+#include "base/sort.h"
 #include <stdlib.h>
 
 /* The piece of this rank that an owned vertex is in. */
@@ -98,7 +99,7 @@ static void TakeVertices(const EqmSharedLevel *shared, PetscInt k, const EqmPiec
       if (v < begin || v >= begin + num) work->vertex[n++] = v;
     }
   }
-  qsort(work->vertex + num, (size_t)(n - num), sizeof(PetscInt), CompareIntegers);
+  EqmSort(work->vertex + num, (size_t)(n - num), sizeof(PetscInt), CompareIntegers);
   for (PetscInt q = num; q < n; q++) {
     if (q == num || work->vertex[q] != work->vertex[around - 1]) work->vertex[around++] = work->vertex[q];
   }
@@ -127,8 +128,8 @@ static void TakeCells(const EqmSharedLevel *shared, PetscInt k, const EqmPieceCe
       const PetscInt v = from->cells[3 * item + a];
       corner[a] = v - begin;
       if (v >= begin && v < begin + num) continue;
-      const PetscInt *const found =
-          bsearch(&v, work->vertex + num, (size_t)(work->level.num_vertices - num), sizeof(PetscInt), CompareIntegers);
+      const PetscInt *const found = EqmSearch(&v, work->vertex + num, (size_t)(work->level.num_vertices - num),
+                                              sizeof(PetscInt), CompareIntegers);
       corner[a] = (PetscInt)(found - work->vertex);
       outside = 1;
     }
