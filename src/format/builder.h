@@ -27,7 +27,8 @@ typedef struct {
 } EqmPolygon;
 
 typedef struct {
-  EqmInput *in; /* for messages */
+  EqmInput *in;                                  /* for messages */
+  size_t vertices_before, texture_points_before; /* of a part of a file: those of the parts before it */
   size_t num_vertices, vertex_capacity;
   PetscReal *vertices; /* 3 * vertex_capacity */
   EqmCellList triangles, tetrahedra;
@@ -62,7 +63,7 @@ PETSC_INTERN PetscErrorCode EqmBuilderAddStrip(EqmBuilder *builder, const char *
 PETSC_INTERN void EqmBuilderNoteOther(EqmBuilder *builder, PetscInt dimension, const char *position, const char *what);
 PETSC_INTERN PetscErrorCode EqmBuilderGrow(EqmInput *in, size_t row_bytes, size_t count, size_t more, size_t *capacity,
                                            void *array);
-PETSC_INTERN PetscErrorCode EqmBuilderCutPolygons(EqmBuilder *builder);
+PETSC_INTERN PetscErrorCode EqmBuilderCutPolygons(EqmBuilder *builder, const PetscReal *corners);
 PETSC_INTERN void EqmBuilderSetRow(EqmBuilder *builder, PetscInt64 row);
 PETSC_INTERN void EqmBuilderSetGroup(EqmBuilder *builder, PetscInt64 group);
 PETSC_INTERN PetscErrorCode EqmBuilderAddField(EqmBuilder *builder, const char *name, size_t name_length,
@@ -70,7 +71,11 @@ PETSC_INTERN PetscErrorCode EqmBuilderAddField(EqmBuilder *builder, const char *
                                                PetscReal **values);
 PETSC_INTERN PetscErrorCode EqmBuilderDropField(EqmBuilder *builder);
 PETSC_INTERN void EqmBuilderNoteLeft(EqmBuilder *builder, const char *what);
-PETSC_INTERN PetscErrorCode EqmBuilderTakeFields(EqmBuilder *builder, EqmSerialMesh *mesh, const EqmCellList *cells);
+PETSC_INTERN PetscErrorCode EqmBuilderTakeFields(EqmBuilder *builder, EqmSerialMesh *mesh, const EqmCellList *cells,
+                                                 PetscBool has_groups);
+PETSC_INTERN PetscBool EqmBuilderHasGroups(const EqmCellList *cells);
 PETSC_INTERN PetscErrorCode EqmBuilderFinish(EqmBuilder *builder, PetscErrorCode code, EqmSerialMesh *mesh);
+PETSC_INTERN PetscErrorCode EqmBuilderFinishPart(EqmBuilder *builder, MPI_Comm comm, PetscBool *understood,
+                                                 EqmSerialMesh *part);
 
 #endif

@@ -135,8 +135,9 @@ PetscErrorCode EqmBuilderAddStrip(EqmBuilder *builder, const char *position, Pet
   return 0;
 }
 
-/* EqmBuilderCutPolygons - fill in the triangles of polygons, now that all vertices are known. Not collective. */
-PetscErrorCode EqmBuilderCutPolygons(EqmBuilder *builder)
+/* EqmBuilderCutPolygons - fill in the triangles of polygons, now that all vertices are known. Not collective.
+   coordinates - of the corners of all polygons; NULL: they are those of this builder's vertices. */
+PetscErrorCode EqmBuilderCutPolygons(EqmBuilder *builder, const PetscReal *coordinates)
 {
   PetscReal x[3 * EQM_MAX_POLYGON];
   PetscInt cut[3 * EQM_MAX_POLYGON];
@@ -145,9 +146,9 @@ PetscErrorCode EqmBuilderCutPolygons(EqmBuilder *builder)
     const EqmPolygon *const polygon = &builder->polygons[p];
     const PetscInt *const corners = builder->polygon_corners.corners + 2 * polygon->first_corner;
 
-    for (PetscInt k = 0; k < 3 * polygon->num_corners; ++k)
+    for (PetscInt k = 0; k < 3 * polygon->num_corners && !coordinates; ++k)
       x[k] = builder->vertices[3 * (size_t)corners[2 * (k / 3)] + (size_t)(k % 3)];
-    EqmPolygonTriangulate(polygon->num_corners, x, cut);
+    EqmPolygonTriangulate(polygon->num_corners, coordinates ? coordinates + 3 * polygon->first_corner : x, cut);
     for (PetscInt t = 0; t < polygon->num_corners - 2; ++t) {
       PetscInt vertex[3], texture[3];
 

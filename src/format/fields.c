@@ -75,28 +75,35 @@ static void CopyRows(const EqmRawField *raw, const EqmCellList *cells, PetscReal
   }
 }
 
-/* The field "group" of a file whose cells have groups other than 0. */
+/* EqmBuilderHasGroups - are there cells of groups other than 0? Not collective. */
+PetscBool EqmBuilderHasGroups(const EqmCellList *cells)
+{
+  for (size_t i = 0; cells->row && cells->num_rows == cells->count && i < cells->count; ++i) {
+    if (cells->row[i] != 0) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* The field "group". */
 static PetscErrorCode AddGroups(const EqmCellList *cells, EqmSerialMesh *mesh)
 {
   const EqmMeshField kind = {EQM_FIELD_GROUP, PETSC_TRUE, 1, NULL};
-  PetscBool all_zero = PETSC_TRUE;
   PetscReal *values;
 
-  for (size_t i = 0; i < cells->count && all_zero; ++i) all_zero = cells->row[i] == 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (all_zero) return 0;
   EqmTry(EqmMeshFieldsAdd(&mesh->num_fields, &mesh->fields, &kind, cells->count, &values));
   for (size_t i = 0; i < cells->count; ++i) values[i] = (PetscReal)cells->row[i];
   return 0;
 }
 
 /* EqmBuilderTakeFields - hand the fields over to the mesh that was made of the vertices and of `cells`; those that do
-   not fit it are dropped. Not collective. */
-PetscErrorCode EqmBuilderTakeFields(EqmBuilder *builder, EqmSerialMesh *mesh, const EqmCellList *cells)
+   not fit it are dropped. Not collective. has_groups - where rows are groups: some cells have others than 0. */
+PetscErrorCode EqmBuilderTakeFields(EqmBuilder *builder, EqmSerialMesh *mesh, const EqmCellList *cells,
+                                    PetscBool has_groups)
 {
   const PetscBool has_rows = cells->row && cells->num_rows == cells->count ? PETSC_TRUE : PETSC_FALSE;
   PetscReal *values;
 
-  if (builder->rows_are_groups) return has_rows ? AddGroups(cells, mesh) : 0;
+  if (builder->rows_are_groups) return has_groups ? AddGroups(cells, mesh) : 0;
   for (PetscInt f = 0; f < builder->num_fields; ++f) {
     const EqmRawField *const raw = &builder->fields[f];
 

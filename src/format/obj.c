@@ -4,7 +4,7 @@
 #include "builder.h"
 #include "mesh/fields.h"
 #include "format.h"
-#include "metadata.h"
+#include "obj_groups.h"
 #include "writers.h"
 
 #include <stdio.h>
@@ -39,19 +39,12 @@ static PetscBool RecogniseObj(const char *bytes, size_t length)
   return word_length && !EqmAtLineEnd(&in) && IsKeyword(word, word_length) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-enum { MOST_GROUPS = 1000, LONGEST_GROUP = 128 }; /* of names that are kept */
-
-/* The groups of the file by name; faces of group 0 are in none. */
-typedef struct {
-  PetscInt64 num, first; /* number of the first name */
-  char name[MOST_GROUPS][LONGEST_GROUP];
-} Groups;
-
-/* The largest index of the file; faces may come before the vertices that they name. */
+/* The largest index of the file, as faces may come before the vertices that they name; words that OBJ does not have. */
 typedef struct {
   PetscInt64 index;
   const char *position;
-} Largest;
+  PetscBool foreign;
+} Findings;
 
 static PetscErrorCode ParseVertex(EqmInput *in, EqmBuilder *builder)
 {
@@ -79,7 +72,7 @@ static PetscErrorCode ParseTexturePoint(EqmInput *in, EqmBuilder *builder)
 /* One corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative indices count back from the last vertex so far. */
 static PetscErrorCode ParseCorner(EqmInput *in, EqmBuilder *builder, PetscInt64 *corner)
 {
-  const PetscInt64 num_vertices = (PetscInt64)builder->num_vertices;
+  const PetscInt64 num_vertices = (PetscInt64)(builder->vertices_before + builder->num_vertices);
   const char *next = EqmParseInteger(in->cursor, in->end, corner), *after;
   PetscInt64 texture = 0;
 
@@ -93,7 +86,7 @@ static PetscErrorCode ParseCorner(EqmInput *in, EqmBuilder *builder, PetscInt64 
   *corner = *corner > 0 ? *corner - 1 : *corner + num_vertices;
   after = next < in->end && *next == '/' ? EqmParseInteger(next + 1, in->end, &texture) : NULL;
   if (!after) texture = 0;
-  if (texture < 0) texture += (PetscInt64)builder->num_texture_points + 1;
+  if (texture < 0) texture += (PetscInt64)(builder->texture_points_before + builder->num_texture_points) + 1;
   in->cursor = next;
   while (in->cursor < in->end && !EqmIsSpace(*in->cursor)) ++in->cursor;
   return EqmBuilderAddCorner(builder, *corner, texture - 1);
@@ -109,7 +102,7 @@ static void SkipContinuation(EqmInput *in)
   }
 }
 
-static PetscErrorCode ParseFace(EqmInput *in, EqmBuilder *builder, Largest *largest)
+static PetscErrorCode ParseFace(EqmInput *in, EqmBuilder *builder, Findings *findings)
 {
   const char *position = in->cursor;
 
@@ -118,60 +111,24 @@ static PetscErrorCode ParseFace(EqmInput *in, EqmBuilder *builder, Largest *larg
     PetscInt64 corner;
 
     EqmTry(ParseCorner(in, builder, &corner));
-    if (corner > largest->index) *largest = (Largest){corner, position};
+    if (corner > findings->index) {
+      findings->index = corner;
+      findings->position = position;
+    }
   }
   return EqmBuilderEndFace(builder, position, PETSC_MAX_INT);
 }
 
-/* The number of a name: what we wrote for unnamed groups has its number in it, others count from `first`. */
-static PetscInt64 GroupOfName(const char *name, Groups *groups)
-{
-  long long number;
-  int length = 0;
-
-  if (!strcmp(name, "default")) return 0;
-  if (!groups->num && sscanf(name, "group_%lld%n", &number, &length) == 1 && !name[length]) {
-    groups->first = MOST_GROUPS + PetscMax(groups->first, PetscMin(number, PETSC_MAX_INT / 2));
-    return number;
-  }
-  for (PetscInt64 k = 0; k < groups->num; ++k) {
-    if (!strcmp(name, groups->name[k])) return groups->first + k;
-  }
-  if (groups->num == MOST_GROUPS) return 0;
-  strcpy(groups->name[groups->num], name);
-  return groups->first + groups->num++;
-}
-
 /* `g name` or `o name`: the faces that follow belong to the group of that name. */
-static PetscErrorCode ParseGroup(EqmInput *in, EqmBuilder *builder, Groups *groups)
+static void ParseGroup(EqmInput *in, EqmBuilder *builder, EqmObjGroups *groups)
 {
-  char text[LONGEST_GROUP];
-  const char *name;
-  size_t length;
+  char name[EQM_OBJ_LONGEST_GROUP];
 
-  EqmSkipBlanks(in);
-  name = in->cursor;
-  while (in->cursor < in->end && *in->cursor != '\n' && *in->cursor != '\r') ++in->cursor;
-  for (length = (size_t)(in->cursor - name); length && EqmIsBlank(name[length - 1]);) --length;
-  snprintf(text, sizeof(text), "%.*s", (int)PetscMin(length, sizeof(text) - 1), name);
-  EqmBuilderSetGroup(builder, text[0] ? GroupOfName(text, groups) : 0);
-  return 0;
+  EqmObjReadGroupName(in, name);
+  EqmBuilderSetGroup(builder, EqmObjGroupOfName(name, groups));
 }
 
-/* The names go on as metadata. */
-static PetscErrorCode KeepNames(const Groups *groups, char **metadata)
-{
-  char key[40];
-
-  for (PetscInt64 k = 0; k < groups->num; ++k) {
-    snprintf(key, sizeof(key), EQM_GROUP_KEY, (long long)(groups->first + k));
-    EqmTry(EqmMetadataAdd(metadata, key, groups->name[k]));
-  }
-  return 0;
-}
-
-static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest *largest, Groups *groups,
-                                     PetscBool *foreign)
+static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, EqmObjGroups *groups, Findings *findings)
 {
   const char *word;
   size_t length = EqmReadWord(in, &word);
@@ -181,13 +138,13 @@ static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest 
   } else if (length == 2 && !memcmp(word, "vt", 2)) {
     EqmTry(ParseTexturePoint(in, builder));
   } else if (length == 1 && *word == 'f') {
-    EqmTry(ParseFace(in, builder, largest));
+    EqmTry(ParseFace(in, builder, findings));
   } else if (length == 1 && (*word == 'g' || *word == 'o')) {
-    EqmTry(ParseGroup(in, builder, groups));
+    ParseGroup(in, builder, groups);
   } else if (EqmWordIs(word, length, "vn") || EqmWordIs(word, length, "usemtl")) {
     EqmBuilderNoteLeft(builder, length == 2 ? "normals" : "materials");
   } else if (length && !IsKeyword(word, length)) {
-    *foreign = PETSC_TRUE;
+    findings->foreign = PETSC_TRUE;
     for (size_t i = 0; i < length; ++i) {
       if ((unsigned char)word[i] < ' ')
         return EqmRejectAt(in, word, EQM_ERR_IO, "binary bytes: this is not an OBJ file");
@@ -196,23 +153,30 @@ static PetscErrorCode ParseStatement(EqmInput *in, EqmBuilder *builder, Largest 
   return 0;
 }
 
-static PetscErrorCode ParseStatements(EqmInput *in, EqmBuilder *builder, Groups *groups)
+/* All lines of a file, or of a part of it. */
+static PetscErrorCode ParseStatements(EqmInput *in, EqmBuilder *builder, EqmObjGroups *groups, Findings *findings)
 {
-  Largest largest = {-1, in->start};
-  PetscBool foreign = PETSC_FALSE;
-
-  EqmSkipMark(in);
+  *findings = (Findings){-1, in->start, PETSC_FALSE};
   while (in->cursor < in->end) {
-    EqmTry(ParseStatement(in, builder, &largest, groups, &foreign));
+    EqmTry(ParseStatement(in, builder, groups, findings));
     EqmSkipLine(in);
   }
-  if (foreign && !builder->num_vertices) {
+  return 0;
+}
+
+static PetscErrorCode ParseAll(EqmInput *in, EqmBuilder *builder, EqmObjGroups *groups)
+{
+  Findings findings;
+
+  EqmSkipMark(in);
+  EqmTry(ParseStatements(in, builder, groups, &findings));
+  if (findings.foreign && !builder->num_vertices) {
     return EqmRejectAt(in, in->start, EQM_ERR_IO,
                        "this is not an OBJ file: it has no vertices (lines that begin with v)");
   }
-  if (largest.index >= (PetscInt64)builder->num_vertices) {
-    return EqmRejectAt(in, largest.position, EQM_ERR_IO, "vertex index %lld is out of range 1..%lld",
-                       (long long)largest.index + 1, (long long)builder->num_vertices);
+  if (findings.index >= (PetscInt64)builder->num_vertices) {
+    return EqmRejectAt(in, findings.position, EQM_ERR_IO, "vertex index %lld is out of range 1..%lld",
+                       (long long)findings.index + 1, (long long)builder->num_vertices);
   }
   return 0;
 }
@@ -222,7 +186,7 @@ static PetscErrorCode ParseObj(const char *bytes, size_t length, EqmSerialMesh *
 {
   EqmInput in;
   EqmBuilder builder;
-  Groups *groups;
+  EqmObjGroups *groups;
   PetscErrorCode code;
 
   EqmInputOpen(&in, bytes, length, error, error_length);
@@ -230,16 +194,85 @@ static PetscErrorCode ParseObj(const char *bytes, size_t length, EqmSerialMesh *
   groups->first = 1;
   EqmBuilderOpen(&builder, &in);
   EqmBuilderSetGroup(&builder, 0);
-  code = EqmBuilderFinish(&builder, ParseStatements(&in, &builder, groups), mesh);
-  if (!code) EqmTry(KeepNames(groups, &mesh->metadata));
+  code = EqmBuilderFinish(&builder, ParseAll(&in, &builder, groups), mesh);
+  if (!code) EqmTry(EqmObjKeepNames(groups, &mesh->metadata));
   EqmTry(PetscFree(groups));
   return code;
+}
+
+/* What of a part of the file the others must know before they parse theirs. */
+static void Survey(EqmInput *in, PetscInt64 count[2], EqmObjNames *names)
+{
+  count[0] = count[1] = 0;
+  names->first_name = -1;
+  while (in->cursor < in->end) {
+    const char *word;
+    const size_t length = EqmReadWord(in, &word);
+    char name[EQM_OBJ_LONGEST_GROUP];
+
+    if (length == 1 && *word == 'v') ++count[0];
+    if (length == 2 && !memcmp(word, "vt", 2)) ++count[1];
+    if (length == 1 && (*word == 'g' || *word == 'o')) {
+      EqmObjReadGroupName(in, name);
+      EqmObjAddName(name, names);
+    }
+    EqmSkipLine(in);
+  }
+}
+
+/* Everybody's survey: what is before this rank's part, and all there is. Collective. */
+static PetscErrorCode ShareSurvey(MPI_Comm comm, EqmInput *in, EqmBuilder *builder, EqmObjGroups groups[2],
+                                  PetscInt64 total[2], PetscBool *understood)
+{
+  PetscInt64 count[2], before[2], group;
+  EqmObjNames *names;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(1, &names));
+  Survey(in, count, names);
+  *understood = names->overflow ? PETSC_FALSE : PETSC_TRUE;
+  PetscCallMPI(MPI_Scan(count, before, 2, MPIU_INT64, MPI_SUM, comm));
+  PetscCall(MPIU_Allreduce(count, total, 2, MPIU_INT64, MPI_SUM, comm));
+  builder->vertices_before = (size_t)(before[0] - count[0]);
+  builder->texture_points_before = (size_t)(before[1] - count[1]);
+  PetscCall(EqmObjShareNames(comm, names, &groups[0], &group, &groups[1]));
+  EqmBuilderSetGroup(builder, group);
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+/* Read this rank's part of an OBJ file. See EqmPartParser. */
+static PetscErrorCode ParseObjPart(MPI_Comm comm, const EqmFilePart *part, EqmSerialMesh *mesh, PetscBool *understood)
+{
+  char unused[EQM_MESSAGE_MAX];
+  EqmInput in;
+  EqmBuilder builder;
+  EqmObjGroups *groups;
+  Findings findings;
+  PetscInt64 total[2];
+
+  PetscFunctionBegin;
+  EqmInputOpen(&in, part->bytes, part->length, unused, sizeof(unused));
+  if (part->before == 0) EqmSkipMark(&in);
+  EqmBuilderOpen(&builder, &in);
+  PetscCall(PetscMalloc1(2, &groups));
+  PetscCall(ShareSurvey(comm, &in, &builder, groups, total, understood));
+  in.cursor = in.start;
+  if (part->before == 0) EqmSkipMark(&in);
+  if (ParseStatements(&in, &builder, &groups[0], &findings)) *understood = PETSC_FALSE;
+  if (total[0] > PETSC_MAX_INT || findings.index >= total[0] || (findings.foreign && !total[0]))
+    *understood = PETSC_FALSE;
+  PetscCall(EqmBuilderFinishPart(&builder, comm, understood, mesh));
+  if (*understood) PetscCall(EqmObjKeepNames(&groups[1], &mesh->metadata));
+  PetscCall(PetscFree(groups));
+  PetscFunctionReturn(0);
 }
 
 EQM_DEFINE_FORMAT(Obj) = {.name = "OBJ",
                           .suffixes = "obj",
                           .recognise = RecogniseObj,
                           .parse = ParseObj,
+                          .parse_part = ParseObjPart,
                           .write = EqmWriteObj,
                           .writes_texture = PETSC_TRUE,
                           .groups = PETSC_TRUE};

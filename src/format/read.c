@@ -1,8 +1,10 @@
 /* EqmSoupRead. */
 #include "format.h"
+#include "mesh/soup_private.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 /* On rank 0: the format of a file by its content, else by its name, as a row of the list. */
 static PetscErrorCode ChooseFormat(const char *file, const char *bytes, size_t length, int *row, char *error,
@@ -39,9 +41,55 @@ PetscErrorCode EqmFormatReadOnRank(const char *file, int *row, EqmSerialMesh *me
   return code;
 }
 
+/* On rank 0: the row of a format that all ranks can parse, if name and first bytes of a file both show it; else -1. */
+static int RowForParts(const char *file)
+{
+  enum { HEAD = 65536 };
+  const int row = EqmFormatRowOfSuffix(file);
+  struct stat status;
+  char *head;
+  FILE *stream;
+  size_t length = 0;
+  PetscBool shown;
+
+  if (row < 0 || !EqmFormatAt(row)->parse_part) return -1;
+  if (stat(file, &status) || !S_ISREG(status.st_mode)) return -1; /* a pipe can be read once */
+  head = malloc(HEAD);
+  stream = fopen(file, "rb");
+  if (head && stream) length = fread(head, 1, HEAD, stream);
+  shown = length && EqmFormatRowOfContent(head, length) == row ? PETSC_TRUE : PETSC_FALSE;
+  if (stream) fclose(stream);
+  free(head);
+  return shown ? row : -1;
+}
+
+/* Every rank its part of the file, where format and file allow that; else `soup` stays NULL. Collective. */
+static PetscErrorCode ReadParts(MPI_Comm comm, const char *file, EqmSoup *soup)
+{
+  EqmFilePart part;
+  EqmSerialMesh mesh = {0};
+  PetscMPIInt rank, size;
+  PetscBool success;
+  int row = -1;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (size == 1) PetscFunctionReturn(0);
+  if (rank == 0) row = RowForParts(file);
+  PetscCallMPI(MPI_Bcast(&row, 1, MPI_INT, 0, comm));
+  if (row < 0) PetscFunctionReturn(0);
+  PetscCall(EqmFilePartRead(comm, file, &part, &success));
+  if (success) PetscCall(EqmFormatAt(row)->parse_part(comm, &part, &mesh, &success));
+  free(part.bytes);
+  if (success) PetscCall(EqmSoupCreateFromParts(comm, &mesh, file, soup));
+  PetscFunctionReturn(0);
+}
+
 /* EqmSoupRead - read a mesh file; its format is chosen by its content first, then by its name.
 
-   Collective. One rank reads and parses and deals the mesh to all; HDF5 files are read by all ranks, each its slab.
+   Collective. HDF5 files are read by all ranks, each its slab, and so are OBJ files, each its lines. One rank reads and
+   parses those of the other formats, and what is not as it should be, and deals the mesh to all.
    Errors: EQM_ERR_IO (missing, unreadable, not a mesh, truncated; the message names file and line or byte),
    EQM_ERR_MESH (well-formed, but without triangles or tetrahedra, or with other cells). */
 PetscErrorCode EqmSoupRead(MPI_Comm comm, const char *file, EqmSoup *soup)
@@ -56,6 +104,8 @@ PetscErrorCode EqmSoupRead(MPI_Comm comm, const char *file, EqmSoup *soup)
   PetscFunctionBegin;
   *soup = NULL;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(ReadParts(comm, file, soup));
+  if (*soup) PetscFunctionReturn(0);
   if (rank == 0) code = EqmFormatReadOnRank(file, &row, &mesh, error, sizeof(error));
   PetscCall(EqmAgree(comm, code, error));
   PetscCallMPI(MPI_Bcast(&row, 1, MPI_INT, 0, comm));

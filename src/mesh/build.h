@@ -14,6 +14,9 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode EqmMeshNumberInOrder(EqmMesh mesh, PetscInt num_leaves, const PetscInt *leaf,
                                                  PetscInt *number);
+/* First row of a rank's slab of `total` rows: contiguous, in rank order, sizes that differ by one at most. Not
+   collective. */
+PETSC_INTERN PetscInt EqmSlabStart(PetscInt total, PetscMPIInt rank, PetscMPIInt size);
 PETSC_INTERN PetscErrorCode EqmSoupComputeChecksum(EqmSoup soup);
 PETSC_INTERN PetscErrorCode EqmSoupComputeIdentity(EqmSoup soup, PetscInt64 *identity);
 PETSC_INTERN PetscErrorCode EqmSoupSlabSF(EqmSoup soup, PetscInt num_leaves, const PetscInt *vertices, PetscSF *sf);

@@ -6,8 +6,7 @@
 
 enum { TAG_VERTICES = 1, TAG_CELLS = 2, TAG_FIELD = 3 };
 
-/* First row of a rank's share of `total` rows: contiguous, in rank order, sizes that differ by one at most. */
-static PetscInt ShareStart(PetscInt total, PetscMPIInt rank, PetscMPIInt size)
+PetscInt EqmSlabStart(PetscInt total, PetscMPIInt rank, PetscMPIInt size)
 {
   return (PetscInt)((PetscInt64)total / size * rank + PetscMin(rank, (PetscInt64)total % size));
 }
@@ -20,7 +19,7 @@ static PetscErrorCode BalancedStarts(MPI_Comm comm, PetscInt total, PetscInt **s
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(PetscMalloc1(size + 1, start));
-  for (PetscMPIInt r = 0; r <= size; ++r) (*start)[r] = ShareStart(total, r, size);
+  for (PetscMPIInt r = 0; r <= size; ++r) (*start)[r] = EqmSlabStart(total, r, size);
   PetscFunctionReturn(0);
 }
 

@@ -23,4 +23,11 @@ struct _p_EqmSoup {
   PetscInt64 checksum;           /* CRC-32 of vertices and cells in input order, rank-independent */
 };
 
+/* EqmSoupCreateFromParts - a soup in balanced slabs from the parts of a mesh that the ranks have read, in their order:
+   the same as from one rank that has read all.
+
+   Collective. part - taken over; fields, note, left and metadata are the same on every rank. Errors: EQM_ERR_IO (more
+   vertices or cells than PetscInt can count). */
+PETSC_INTERN PetscErrorCode EqmSoupCreateFromParts(MPI_Comm comm, EqmSerialMesh *part, const char *file, EqmSoup *soup);
+
 #endif
