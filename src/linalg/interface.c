@@ -210,7 +210,7 @@ PetscErrorCode EqmInterfaceCreate(MPI_Comm comm, PetscInt num_shared, const Pets
   PetscCall(PetscNew(&tree));
   tree->comm = comm;
   tree->num_shared = num_shared;
-  tree->shared_front = EqmSharedFrontsWork() ? shared_front : PETSC_MAX_INT;
+  tree->shared_front = EqmInterfaceCanShare() ? shared_front : PETSC_MAX_INT;
   PetscCall(FindPath(tree));
   PetscCall(PetscMalloc1(RECORD * num_shared, &record));
   for (PetscInt k = 0; k < num_shared; k++) {

@@ -31,4 +31,7 @@ PETSC_INTERN PetscErrorCode EqmInterfaceFactor(EqmInterface tree, PetscScalar **
    Collective. */
 PETSC_INTERN PetscErrorCode EqmInterfaceSolve(EqmInterface tree, PetscInt num_rhs, PetscScalar *columns);
 
+/* Is ScaLAPACK there, so that fronts can be shared? Not collective. */
+PETSC_INTERN PetscBool EqmInterfaceCanShare(void);
+
 #endif

@@ -65,8 +65,6 @@ PETSC_INTERN PetscErrorCode EqmInterfaceRaise(EqmInterface tree, EqmFront *front
 PETSC_INTERN PetscErrorCode EqmInterfaceLower(EqmInterface tree, EqmFront *front, PetscInt num_rhs, EqmPassed *passed);
 
 /* ---- a front on several ranks, by ScaLAPACK (shared_front.c); collective over the ranks of the front's groups */
-/* Is ScaLAPACK there? Not collective. */
-PETSC_INTERN PetscBool EqmSharedFrontsWork(void);
 PETSC_INTERN PetscErrorCode EqmSharedFrontSetUp(EqmFront *front);
 PETSC_INTERN PetscErrorCode EqmSharedFrontReset(EqmFront *front);
 /* Eliminate: the factor's columns into the panel, `rest` less their product. `success` is set to false if the matrix is

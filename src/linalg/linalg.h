@@ -5,6 +5,9 @@
 #include <petscmat.h>
 #include <equimap/mesh.h>
 
+/* Rows of a matrix, or vertices of a mesh, that may be gathered on one rank of several. */
+enum { EQM_MOST_ON_ONE_RANK = 1000000 };
+
 /* ---- unknowns: how many each vertex has and where they stand in the global vector */
 typedef struct {
   PetscInt num_owned;         /* unknowns of this rank */
@@ -124,7 +127,7 @@ struct _p_EqmLinear {
 };
 
 /* List the options of linear solvers, with help: -linear_solver, -linear_shared_front, -linear_precision,
-   -memory_limit. */
+   -linear_gather, -memory_limit. */
 PETSC_INTERN PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject);
 /* Fronts of more unknowns are shared between ranks. Option: -linear_shared_front. Collective. Errors: EQM_ERR_USAGE. */
 PETSC_INTERN PetscErrorCode EqmLinearGetSharedFront(MPI_Comm comm, PetscInt *unknowns);
@@ -174,7 +177,7 @@ PETSC_INTERN PetscErrorCode EqmGeneralFactor(EqmGeneral general, EqmCellMatrix c
 /* Solve in place for right-hand sides that are stored one after the other. Collective. */
 PETSC_INTERN PetscErrorCode EqmGeneralSolve(EqmGeneral general, PetscInt num_rhs, PetscReal *columns);
 
-/* LU of a matrix that is not symmetric, sequential and the same in every run (lu.c). */
+/* LU of a matrix that is not symmetric; up to so many rows sequential, and the same in every run (lu.c). */
 typedef struct _p_EqmLu *EqmLu;
 PETSC_INTERN PetscErrorCode EqmLuCreate(Mat matrix, const char *prefix, EqmLu *lu);
 PETSC_INTERN PetscErrorCode EqmLuDestroy(EqmLu *lu);

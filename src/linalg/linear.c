@@ -1,5 +1,6 @@
 /* One face for the direct solvers and multigrid: which of them a matrix gets. What it does then: linear_solve.c. */
 #include "linalg/linalg.h"
+#include "linalg/interface.h"
 #include "mesh/mesh_private.h"
 
 /* Larger fronts on one rank take half a gigabyte, and minutes that the other ranks wait. */
@@ -86,14 +87,17 @@ static PetscBool IsCostly(EqmLinear linear)
 
 /* In the plane and on surfaces an exact Cholesky factor beats multigrid at every size that fits in memory. On one rank
    the multifrontal factor is the fastest on one thread already, and the one that uses several; on several ranks
-   substructuring gives the same bits in every run, as long as what is left between the ranks is no burden. */
+   substructuring gives the same bits in every run, as long as what is left between the ranks is no burden. MUMPS needs
+   the order of all vertices on one rank, which large meshes do not get: with fronts shared it has nothing to offer
+   there. */
 static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal limit)
 {
   static const EqmSolverKind alone[] = {EQM_SOLVER_MULTIFRONTAL},
                              together[] = {EQM_SOLVER_SUBSTRUCTURE, EQM_SOLVER_MUMPS};
   const PetscBool is_alone = (PetscBool)(linear->mesh->size == 1);
   const EqmSolverKind *const direct = is_alone ? alone : together;
-  const PetscInt num_direct = is_alone ? 1 : 2;
+  const PetscBool is_large = (PetscBool)(linear->mesh->num_vertices > EQM_MOST_ON_ONE_RANK);
+  const PetscInt num_direct = is_alone || (is_large && EqmInterfaceCanShare()) ? 1 : 2;
   PetscBool costly = IsCostly(linear);
 
   PetscFunctionBegin;

@@ -23,7 +23,7 @@ PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject)
 {
   PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO, precision = (PetscEnum)EQM_PRECISION_SINGLE;
   PetscReal limit = 0.;
-  PetscInt shared_front = SHARED_FRONT;
+  PetscInt shared_front = SHARED_FRONT, gather = EQM_MOST_ON_ONE_RANK;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsEnum("-linear_solver",
@@ -37,6 +37,9 @@ PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject)
                              "how multifrontal and substructure keep factors that only serve to find steps: single "
                              "takes half the memory, and less time",
                              "EqmLinearCreate", EqmPrecisions, precision, &precision, NULL));
+  PetscCall(PetscOptionsInt("-linear_gather",
+                            "rows of a system that is not symmetric which one rank of several may factor alone",
+                            "EqmLuCreate", gather, &gather, NULL));
   PetscCall(
       PetscOptionsReal("-memory_limit",
                        "at most so many GiB per rank for factors; beyond, -linear_solver auto iterates (0: most of "

@@ -24,7 +24,7 @@ void pdgemm_(const char *transa, const char *transb, const int *m, const int *n,
              const int *jb, const int *descb, const double *beta, double *c, const int *ic, const int *jc,
              const int *descc);
 
-PetscBool EqmSharedFrontsWork(void)
+PetscBool EqmInterfaceCanShare(void)
 {
   return PETSC_TRUE;
 }
@@ -109,7 +109,7 @@ PetscErrorCode EqmSharedFrontSolve(EqmFront *front, PetscBool transposed, PetscI
 
 #else
 
-PetscBool EqmSharedFrontsWork(void)
+PetscBool EqmInterfaceCanShare(void)
 {
   return PETSC_FALSE;
 }

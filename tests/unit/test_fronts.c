@@ -75,7 +75,7 @@ static PetscErrorCode CheckAlike(PetscInt count, const PetscReal *x, const Petsc
 static PetscErrorCode TestShared(Model *model, EqmOrdering ordering)
 {
   const PetscInt n = NUM_RHS * model->unknowns.num_owned;
-  const PetscBool can = (PetscBool)(model->mesh->size > 1 && EqmSharedFrontsWork());
+  const PetscBool can = (PetscBool)(model->mesh->size > 1 && EqmInterfaceCanShare());
   EqmEstimate alone, shared;
   const EqmSeparation *separation;
   PetscReal *x, *y, *again;
