@@ -9,6 +9,7 @@ a real mesh takes beside this is measured (compare.py).
 import functools
 import math
 
+BLOCK = 64    # rows of a block in which fronts are dealt to ranks
 SMALLEST = 8  # parts of so many vertices are not cut further
 
 
@@ -59,15 +60,24 @@ def dissect(vertices, dimension, dofs):
     return box((vertices ** (1. / dimension),) * dimension, (0,) * dimension, dofs)
 
 
+def grid(front, ranks, shared_front):
+    """Rows and columns of the grid of ranks that holds a front, as the program chooses them: one rank a front that is not large."""
+    if front <= shared_front:
+        return 1, 1
+    rows = math.isqrt(ranks)
+    return rows, ranks // rows
+
+
 class Tree:
     """The fronts of a group of ranks: sums over the group, and the worst of one rank."""
 
     def __init__(self, shared):
         self.shared = shared                  # unknowns that go to the group above
+        self.holders = 1                      # ranks that hold what goes there
         self.own_panels = 0.                  # entries of the factor of a rank's own part
         self.own = 0.                         # the same with what waits beside
         self.ghosts = 0.                      # vertices of other ranks beside a rank's own, over all ranks
-        self.entries_sent = 0.                # of packed triangles, from groups to their neighbours
+        self.entries_sent = 0.                # of packed triangles, and of panels within a grid
         self.unknowns_sent = 0.               # of right-hand sides, one way
         self.largest = shared                 # front
         self.largest_message = 0.             # entries
@@ -75,11 +85,13 @@ class Tree:
         self.leader_entries = shared * shared # the most that it holds at once
         self.path_operations = 0.             # one after the other
         self.path_entries = 0.                # of the factor, one after the other in a solve
+        self.path_blocks = 0.                 # of shared panels, one after the other in a solve
 
 
 @functools.lru_cache(maxsize=None)
-def group(lengths, bordered, dofs, ranks):
-    """The tree of ranks over a box: halves of the ranks have halves of the box, merged by the lowest rank of the first."""
+def group(lengths, bordered, dofs, ranks, shared_front):
+    """The tree of ranks over a box: halves of the ranks have halves of the box, merged by the lowest rank of the first or, where
+    the front is large, by all of them."""
     vertices = math.prod(lengths)
     border = dofs * sum(ends * vertices / length for ends, length in zip(bordered, lengths))
     whole = Tree(border)
@@ -92,24 +104,34 @@ def group(lengths, bordered, dofs, ranks):
     parts = []
     for side, count in enumerate((ranks // 2, ranks - ranks // 2)):
         part = tuple(length * count / ranks if k == cut else length for k, length in enumerate(lengths))
-        parts.append(group(part, tuple(1 + (bordered[cut] > side) if k == cut else ends for k, ends in enumerate(bordered)), dofs, count))
+        parts.append(group(part, tuple(1 + (bordered[cut] > side) if k == cut else ends for k, ends in enumerate(bordered)), dofs, count,
+                           shared_front))
     first, second = parts
-    packed = second.shared * (second.shared + 1.) / 2.
+    rows, columns = grid(pivots + border, ranks, shared_front)
+    holders = rows * columns
+    packed = [part.shared * (part.shared + 1.) / 2. for part in parts]
+    panel, update = pivots * (pivots + border) / holders, border * border / holders
+    message = max(triangle / part.holders for triangle, part in zip(packed, parts)) / holders
     _, operations = front_cost(pivots, border)
+    whole.holders = holders
     whole.own_panels, whole.own = max(first.own_panels, second.own_panels), max(first.own, second.own)
     whole.ghosts = first.ghosts + second.ghosts + 2. * pivots / dofs
-    whole.entries_sent = first.entries_sent + second.entries_sent + packed
+    # Of what a group passes on the holders keep what stays with them; ScaLAPACK sends each panel along rows and columns.
+    whole.entries_sent = (first.entries_sent + second.entries_sent + sum(packed) - packed[0] / holders
+                          - (packed[1] / holders if holders > 1 else 0.) + pivots * (pivots + border) * (rows + columns - 2.))
     whole.unknowns_sent = first.unknowns_sent + second.unknowns_sent + second.shared
     whole.largest = max(first.largest, second.largest, pivots + border)
-    whole.largest_message = max(first.largest_message, second.largest_message, packed)
-    whole.panels = first.panels + pivots * (pivots + border)
+    whole.largest_message = max(first.largest_message, second.largest_message, message)
+    whole.panels = first.panels + panel
     whole.leader_entries = max(first.leader_entries, second.leader_entries,
-                               whole.panels + border * border + max(first.shared ** 2, packed))
-    whole.path_operations = max(first.path_operations, second.path_operations) + operations
-    whole.path_entries = max(first.path_entries, second.path_entries) + pivots * (pivots + border)
+                               first.panels + (first.shared ** 2 + packed[0]) / first.holders,
+                               whole.panels + update + packed[0] / first.holders + message)
+    whole.path_operations = max(first.path_operations, second.path_operations) + operations / holders
+    whole.path_entries = max(first.path_entries, second.path_entries) + panel
+    whole.path_blocks = max(first.path_blocks, second.path_blocks) + (pivots / BLOCK if holders > 1 else 0.)
     return whole
 
 
-def tree_of_ranks(vertices, dimension, dofs, ranks):
-    """The tree of fronts of so many ranks over a square or cube of vertices."""
-    return group((vertices ** (1. / dimension),) * dimension, (0,) * dimension, dofs, ranks)
+def tree_of_ranks(vertices, dimension, dofs, ranks, shared_front=math.inf):
+    """The tree of fronts of so many ranks over a square or cube of vertices; fronts of more unknowns are shared."""
+    return group((vertices ** (1. / dimension),) * dimension, (0,) * dimension, dofs, ranks, shared_front)

@@ -16,6 +16,8 @@ from dissection import dissect, tree_of_ranks
 
 REAL = 8                  # bytes
 INT_MAX = 2 ** 31 - 1     # what MPI counts with; PETSc, too, unless built with 64-bit indices
+SHARED_FRONT = 4000       # unknowns; larger fronts are shared (-linear_shared_front)
+MESSAGES_PER_BLOCK = 4    # one after the other in a solve: a broadcast and a sum, up and down
 INDICES = "indices of 32 bits: build with 64"
 CELLS_PER_VERTEX = {2: 2., 3: 5.5}
 # Of one rank of a machine: name of the option, value, unit.
@@ -39,14 +41,15 @@ def halo_bytes(vertices, ranks, dimension, width):
     return REAL * width * ghosts(vertices, ranks, dimension) / ranks
 
 
-def factor(vertices, ranks, dimension, dofs):
+def factor(vertices, ranks, dimension, dofs, shared_front=SHARED_FRONT):
     """What a factorisation holds and moves: a dictionary of numbers, per rank or over all as their names say."""
-    whole, tree = dissect(vertices, dimension, dofs), tree_of_ranks(vertices, dimension, dofs, ranks)
+    whole, tree = dissect(vertices, dimension, dofs), tree_of_ranks(vertices, dimension, dofs, ranks, shared_front)
     return {"nonzeros": whole.nonzeros, "operations": whole.operations,
             "largest_front": tree.largest if ranks > 1 else whole.largest,
             "bytes_of_leader": REAL * (tree.own + tree.leader_entries), "bytes_sent": REAL * tree.entries_sent,
             "operations_on_path": whole.operations / ranks + tree.path_operations,
-            "entries_on_path": whole.nonzeros / ranks + tree.path_entries, "largest_message": tree.largest_message, "own_entries": tree.own_panels}
+            "entries_on_path": whole.nonzeros / ranks + tree.path_entries, "largest_message": tree.largest_message,
+            "blocks_on_path": tree.path_blocks, "own_entries": tree.own_panels}
 
 
 def predict(cells, ranks, dimension, work, machine=None):
@@ -54,7 +57,7 @@ def predict(cells, ranks, dimension, work, machine=None):
     machine = machine or DEFAULTS
     dofs = dimension  # of the coupled matrix
     vertices = cells / CELLS_PER_VERTEX[dimension]
-    cost = factor(vertices, ranks, dimension, dofs)
+    cost, alone = factor(vertices, ranks, dimension, dofs), factor(vertices, ranks, dimension, dofs, math.inf)
     return [
         ("cells", cells, INT_MAX, INDICES),
         ("unknowns", dofs * vertices, INT_MAX, INDICES),
@@ -63,16 +66,19 @@ def predict(cells, ranks, dimension, work, machine=None):
         ("ghosts of a rank, share of its own", ghosts(vertices, ranks, dimension) / vertices, .5, "more ghosts than vertices"),
         ("halo, bytes of a rank and update", halo_bytes(vertices, ranks, dimension, dimension), None, ""),
         ("mesh and vectors, bytes of a rank", work["bytes_per_vertex"] * vertices / ranks, machine["memory"], "memory"),
-        ("factor and fronts, bytes of the leading rank", cost["bytes_of_leader"], machine["memory"], "memory of the rank that leads the last front"),
+        ("factor and fronts, bytes of the rank with most", cost["bytes_of_leader"], machine["memory"], "memory for factor and fronts"),
+        ("the same, no front shared", alone["bytes_of_leader"], None, ""),
         ("largest front, unknowns", cost["largest_front"], None, ""),
         ("largest message, entries", cost["largest_message"], INT_MAX, "counts of a message"),
         ("halo, seconds of an iteration", work["updates"] * (halo_bytes(vertices, ranks, dimension, dimension) / machine["network"]
                                                             + 2 * dimension * machine["latency"]), None, ""),
         ("reductions, seconds of an iteration", work["reductions"] * machine["latency"] * math.log2(max(ranks, 2)), None, ""),
         ("factorisation, seconds", cost["operations_on_path"] / machine["flops"], None, ""),
-        ("the same, were the last fronts shared", cost["operations"] / ranks / machine["flops"], None, ""),
+        ("the same, no front shared", alone["operations_on_path"] / machine["flops"], None, ""),
         ("solves, seconds of an iteration", work["solves"] * 2. * REAL * cost["entries_on_path"] / machine["stream"], None, ""),
-        ("the same, were the last fronts shared", work["solves"] * 2. * REAL * cost["nonzeros"] / ranks / machine["stream"], None, ""),
+        ("messages of these solves, seconds", work["solves"] * cost["blocks_on_path"] * MESSAGES_PER_BLOCK * machine["latency"]
+         * math.log2(max(ranks, 2)) / 2., None, ""),
+        ("the same, no front shared", work["solves"] * 2. * REAL * alone["entries_on_path"] / machine["stream"], None, ""),
     ]
 
 
