@@ -32,7 +32,7 @@ static PetscErrorCode FindGhosts(Product *t)
     if (pass == 1) PetscCall(PetscMalloc1(n, &t->ghost));
     n = 0;
     for (PetscInt q = 0; q < a->start[a->num_rows]; q++) {
-      if (a->column[q] >= a->first && a->column[q] < end) continue;
+      if (a->column[q] < 0 || (a->column[q] >= a->first && a->column[q] < end)) continue;
       if (pass == 1) t->ghost[n] = a->column[q];
       n++;
     }
@@ -131,6 +131,7 @@ static PetscErrorCode Multiply(const Product *t, PetscInt *num, Item **out)
         EqmBlock half = {{0., 0., 0., 0.}};
         const EqmSharedRows *rows;
         PetscInt of;
+        if (a->column[q] < 0) continue;
         PetscCall(RowOf(t, a->column[q], &rows, &of));
         if (n + rows->start[of + 1] - rows->start[of] > room) {
           room = room + room / 2 + 16 * t->num_coarse;
