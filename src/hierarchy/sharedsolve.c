@@ -2,19 +2,15 @@
    the transpose after. */
 #include "hierarchy/sharedsolve.h"
 
-/* The rows of this rank's vertices. Collective. */
+/* The rows of this rank's vertices: the system's own arrays, but for new columns. */
 static PetscErrorCode SystemRows(const EqmSharedLevel *shared, const EqmLevelSystem *system, EqmSharedRows *rows)
 {
   const EqmBlockMatrix *const a = &system->matrix;
-  const PetscInt n = shared->num_owned, length = a->start[n];
+  const PetscInt length = a->start[shared->num_owned];
 
   PetscFunctionBegin;
-  *rows = (EqmSharedRows){.num_rows = n, .first = shared->first};
-  PetscCall(PetscMalloc1(n + 1, &rows->start));
+  *rows = (EqmSharedRows){.num_rows = shared->num_owned, .first = shared->first, .start = a->start, .entry = a->entry};
   PetscCall(PetscMalloc1(length, &rows->column));
-  PetscCall(PetscMalloc1(length, &rows->entry));
-  PetscCall(PetscArraycpy(rows->start, a->start, n + 1));
-  PetscCall(PetscArraycpy(rows->entry, a->entry, length));
   for (PetscInt q = 0; q < length; q++) rows->column[q] = EqmSharedGlobal(shared, a->column[q]);
   PetscFunctionReturn(0);
 }
@@ -34,12 +30,13 @@ static PetscErrorCode SetSmoother(KSP smoother, MatSORType sweep)
   PetscFunctionReturn(0);
 }
 
-/* `rows`: those of the system, which are freed; `finest`: as PETSc's matrix. Collective. */
-static PetscErrorCode SetMultigrid(MPI_Comm comm, PC pc, EqmSharedRows *rows, Mat finest,
+/* `finest`: the system's rows; `matrix`: as PETSc's. Collective. */
+static PetscErrorCode SetMultigrid(MPI_Comm comm, PC pc, const EqmSharedRows *finest, Mat matrix,
                                    const EqmSharedProlongations *prolongations)
 {
   const PetscInt num = prolongations->num;
-  Mat matrix = finest;
+  const EqmSharedRows *at = finest;
+  EqmSharedRows rows = {.start = NULL}, coarser;
 
   PetscFunctionBegin;
   PetscCall(PCSetType(pc, PCMG));
@@ -47,7 +44,6 @@ static PetscErrorCode SetMultigrid(MPI_Comm comm, PC pc, EqmSharedRows *rows, Ma
   PetscCall(PetscObjectReference((PetscObject)matrix));
   for (PetscInt level = num; level >= 0; level--) {
     const PetscInt k = num - level;
-    EqmSharedRows coarser;
     KSP before, after;
     PetscCall(PCMGGetSmootherDown(pc, level, &before));
     PetscCall(KSPSetOperators(before, matrix, matrix));
@@ -59,13 +55,14 @@ static PetscErrorCode SetMultigrid(MPI_Comm comm, PC pc, EqmSharedRows *rows, Ma
       PetscCall(SetSmoother(after, SOR_LOCAL_BACKWARD_SWEEP));
     }
     PetscCall(MatDestroy(&matrix));
-    if (level > 0)
-      PetscCall(EqmSharedGalerkin(comm, rows, &prolongations->rows[k], prolongations->num_coarse[k], &coarser));
-    PetscCall(EqmSharedRowsDestroy(rows));
     if (level == 0) break;
-    *rows = coarser;
-    PetscCall(EqmSharedRowsMatrix(comm, rows, rows->num_rows, &matrix));
+    PetscCall(EqmSharedGalerkin(comm, at, &prolongations->rows[k], prolongations->num_coarse[k], &coarser));
+    PetscCall(EqmSharedRowsDestroy(&rows));
+    rows = coarser;
+    at = &rows;
+    PetscCall(EqmSharedRowsMatrix(comm, at, rows.num_rows, &matrix));
   }
+  PetscCall(EqmSharedRowsDestroy(&rows));
   PetscFunctionReturn(0);
 }
 
@@ -94,6 +91,7 @@ PetscErrorCode EqmSharedSolve(const EqmSharedLevel *shared, EqmLevelSystem *syst
   PetscCall(KSPSetOperators(ksp, matrix, matrix));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(SetMultigrid(shared->comm, pc, &rows, matrix, prolongations));
+  PetscCall(PetscFree(rows.column));
   PetscCall(KSPSolve(ksp, right, solution));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   PetscCall(KSPGetIterationNumber(ksp, iterations));
