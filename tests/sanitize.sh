@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Tests on one and two ranks under the address and undefined-behaviour sanitizers.
 #   tests/sanitize.sh [FOLDER [part | CTEST ARGUMENTS]]     default build-debug; e.g. tests/sanitize.sh build-debug -R format
-# Without arguments unit and integration tests, at night; `part`: what has pointers into files, into other ranks and into
-# memory of its own, in every run.
+# Without arguments unit and integration tests; `part`: what has pointers into files, into other ranks and into memory of
+# its own, two minutes on two cores. Both at night.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-build-debug}
