@@ -363,7 +363,7 @@ def check_register(program):
     program.succeed(*run, "-o", "phi.h5", "-restart", "run.ck", codes=(0, 4, 5))
     with h5py.File(program.file("phi.h5")) as run, h5py.File(program.file("whole.h5")) as whole:
         difference = numpy.abs(run["/map/coordinates"][...] - whole["/map/coordinates"][...]).max()
-    assert difference == 0.0 if program.ranks == 1 else difference < 1e-2, difference
+    assert difference <= 1e-12, difference
 
 
 def check_full_disk(program):
