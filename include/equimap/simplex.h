@@ -6,10 +6,11 @@
 
 /* What is measured of an image simplex. */
 typedef enum {
-  EQM_MEASURE_AREA2,    /* signed area in the plane */
-  EQM_MEASURE_AREA3,    /* area of a flat triangle in space */
-  EQM_MEASURE_HALF_DET, /* half of det(p, q, r): the sign of a triangle on the sphere, and nearly its area */
-  EQM_MEASURE_VOLUME    /* signed volume of a tetrahedron */
+  EQM_MEASURE_AREA2,       /* signed area in the plane */
+  EQM_MEASURE_AREA3,       /* area of a flat triangle in space */
+  EQM_MEASURE_HALF_DET,    /* half of det(p, q, r): the sign of a triangle on the sphere, and nearly its area */
+  EQM_MEASURE_SOLID_ANGLE, /* of a triangle with corners on the unit sphere, seen from its centre: its area there */
+  EQM_MEASURE_VOLUME       /* signed volume of a tetrahedron */
 } EqmMeasureKind;
 
 /* Most edges that a cell has: a tetrahedron's. */

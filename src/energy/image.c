@@ -14,6 +14,8 @@
       loop(EQM_MEASURE_AREA3, __VA_ARGS__);                                                                            \
     else if ((kind) == EQM_MEASURE_VOLUME)                                                                             \
       loop(EQM_MEASURE_VOLUME, __VA_ARGS__);                                                                           \
+    else if ((kind) == EQM_MEASURE_SOLID_ANGLE)                                                                        \
+      loop(EQM_MEASURE_SOLID_ANGLE, __VA_ARGS__);                                                                      \
     else                                                                                                               \
       loop(EQM_MEASURE_HALF_DET, __VA_ARGS__);                                                                         \
   } while (0)

@@ -76,6 +76,52 @@ static inline PetscReal EqmHalfDet(const PetscReal *p, const PetscReal *q, const
   return .5 * EqmDot3(p, n);
 }
 
+/* Numerator and denominator of the tangent of half the solid angle of three points of the unit sphere (Van Oosterom and
+   Strackee 1983, (8)): det(p, q, r) and 1 + p.q + q.r + r.p. */
+static inline void EqmSolidAngleTerms(const PetscReal *const p[], PetscReal *det, PetscReal *denominator)
+{
+  *det = 2. * EqmHalfDet(p[0], p[1], p[2]);
+  *denominator = 1. + EqmDot3(p[0], p[1]) + EqmDot3(p[1], p[2]) + EqmDot3(p[2], p[0]);
+}
+
+static inline PetscReal EqmSolidAngle(const PetscReal *const p[])
+{
+  PetscReal det, denominator;
+
+  EqmSolidAngleTerms(p, &det, &denominator);
+  return 2. * PetscAtan2Real(det, denominator);
+}
+
+/* As the formula above extends beyond the sphere: its tangential part is the angle's. */
+static inline void EqmSolidAngleGradient(const PetscReal *const p[], PetscReal *g)
+{
+  PetscReal det, denominator, scale;
+
+  EqmSolidAngleTerms(p, &det, &denominator);
+  scale = 2. / (det * det + denominator * denominator);
+  for (PetscInt a = 0; a < 3; a++) {
+    const PetscReal *const q = p[(a + 1) % 3], *const r = p[(a + 2) % 3];
+    EqmCross(q, r, g + 3 * a);
+    for (PetscInt k = 0; k < 3; k++) g[3 * a + k] = scale * (denominator * g[3 * a + k] - det * (q[k] + r[k]));
+  }
+}
+
+/* Of 2 atan2(n, m): 2 ((m n'' - n m'') - 2 (m n' - n m') (n n' + m m') / s) / s, s = n^2 + m^2. */
+static inline PetscReal EqmSolidAngleSecondDerivative(const PetscReal *const p[], const PetscReal *const d[])
+{
+  PetscReal n, m, n1, m1 = 0., n2, m2 = 0.;
+
+  EqmSolidAngleTerms(p, &n, &m);
+  n1 = 2. * (EqmHalfDet(d[0], p[1], p[2]) + EqmHalfDet(p[0], d[1], p[2]) + EqmHalfDet(p[0], p[1], d[2]));
+  n2 = 4. * (EqmHalfDet(d[0], d[1], p[2]) + EqmHalfDet(d[0], p[1], d[2]) + EqmHalfDet(p[0], d[1], d[2]));
+  for (PetscInt a = 0; a < 3; a++) {
+    m1 += EqmDot3(d[a], p[(a + 1) % 3]) + EqmDot3(p[a], d[(a + 1) % 3]);
+    m2 += 2. * EqmDot3(d[a], d[(a + 1) % 3]);
+  }
+  const PetscReal s = n * n + m * m;
+  return 2. * ((m * n2 - n * m2) - 2. * (m * n1 - n * m1) * (n * n1 + m * m1) / s) / s;
+}
+
 /* ---- one interface to the measures: value, gradient by corner and coordinate, second derivative along straight
    motions; `p` are the corners' positions, `d` their velocities. `kind` is a constant wherever these are called, so
    that each loop is compiled for its measure. */
@@ -95,6 +141,7 @@ static inline PetscReal EqmMeasureValue(EqmMeasureKind kind, const PetscReal *co
 {
   if (kind == EQM_MEASURE_AREA2) return EqmArea2(p[0], p[1], p[2]);
   if (kind == EQM_MEASURE_VOLUME) return EqmVolume(p[0], p[1], p[2], p[3]);
+  if (kind == EQM_MEASURE_SOLID_ANGLE) return EqmSolidAngle(p);
   return kind == EQM_MEASURE_AREA3 ? EqmArea3(p[0], p[1], p[2]) : EqmHalfDet(p[0], p[1], p[2]);
 }
 
@@ -129,6 +176,10 @@ static inline void EqmMeasureGradient(EqmMeasureKind kind, const PetscReal *cons
   }
   if (kind == EQM_MEASURE_VOLUME) {
     EqmVolumeGradient(p, g);
+    return;
+  }
+  if (kind == EQM_MEASURE_SOLID_ANGLE) {
+    EqmSolidAngleGradient(p, g);
     return;
   }
   if (kind == EQM_MEASURE_HALF_DET) {
@@ -174,6 +225,7 @@ static inline PetscReal EqmMeasureSecondDerivative(EqmMeasureKind kind, const Pe
 {
   if (kind == EQM_MEASURE_AREA2) return 2. * EqmArea2(d[0], d[1], d[2]); /* the area is quadratic */
   if (kind == EQM_MEASURE_VOLUME) return EqmVolumeSecondDerivative(p, d);
+  if (kind == EQM_MEASURE_SOLID_ANGLE) return EqmSolidAngleSecondDerivative(p, d);
   if (kind == EQM_MEASURE_HALF_DET)
     return 2. * (EqmHalfDet(d[0], d[1], p[2]) + EqmHalfDet(d[0], p[1], d[2]) + EqmHalfDet(p[0], d[1], d[2]));
   /* a = |N|/2, N = N0 + t N1 + t^2 N2 */

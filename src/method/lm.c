@@ -196,7 +196,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(EqmLmChooseResidual(method));
   lm->level = lm->residual->without_mean ? 0. : PetscLogReal(iterate->totals.total);
   SetKappa(lm, 0.);
-  if (problem->domain->curved_image) {
+  if (problem->domain->measure == EQM_MEASURE_AREA3) { /* flat triangles can tip over */
     PetscCall(EqmTermCreateUpright(problem, 1., &lm->upright));
     PetscCall(EqmProblemAddTerm(problem, lm->upright));
     SetKappa(lm, 1.);

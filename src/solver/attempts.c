@@ -3,7 +3,7 @@
    in a hundred it goes on with the mixed residual, which is close to E on that side. Where that leaves folds, or a
    map that is far off, other starts are tried. Each attempt has, if the run has checkpoints, one of its own: FILE.2,
    FILE.3, ... The best map is the run's. */
-#include "solver/solver_private.h"
+#include "solver/judge.h"
 #include "mesh/mesh_private.h"
 #include "base/quiet.h"
 #include "problem/term.h"
@@ -66,17 +66,17 @@ static PetscErrorCode Destroy(Attempt *attempt)
 static PetscBool IsOff(EqmSolver solver, PetscReal level)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
-  const PetscReal poor = solver->problem->objective->poor_energy;
+  const PetscReal poor = EqmJudgePoorEnergy(solver);
 
   if (solver->status == EQM_STATUS_STOPPED || solver->limited || totals->folds > 0) return PETSC_FALSE;
   return (PetscBool)(poor > 0. && totals->energy > (solver->problem->terms ? poor : level) * totals->total);
 }
 
-/* Is there a reason to try another start? */
-static PetscBool IsDisappointing(EqmSolver solver)
+/* Is there a reason to try a start for maps with so much energy? */
+static PetscBool IsDisappointing(EqmSolver solver, PetscReal far_energy)
 {
   if (solver->status == EQM_STATUS_STOPPED || solver->limited) return PETSC_FALSE;
-  return (PetscBool)(solver->iterate->totals.folds > 0 || IsOff(solver, solver->formulation->far_energy));
+  return (PetscBool)(solver->iterate->totals.folds > 0 || IsOff(solver, far_energy));
 }
 
 /* E and the terms. */
@@ -259,21 +259,18 @@ PetscBool EqmSolverIsBlocked(EqmSolver solver)
 static PetscErrorCode TryStarts(EqmSolver solver, const EqmSolverSettings *first, size_t suffix, PetscInt *attempt)
 {
   const EqmFormulation *const formulation = solver->formulation;
-  char *names = NULL, *rest;
   PetscInt count = 1;
   PetscReal tried[MOST_STARTS];
 
   PetscFunctionBegin;
-  PetscCall(PetscStrallocpy(formulation->other_starts, &names));
   tried[0] = solver->num_history > 0 ? solver->history[0].energy : -1.;
-  for (char *name = strtok_r(names, ",", &rest); name && count < MOST_STARTS && IsDisappointing(solver);
-       name = strtok_r(NULL, ",", &rest)) {
+  for (const EqmOtherStart *other = formulation->other_starts; other->name && count < MOST_STARTS; other++) {
     const EqmStartType *start;
 
-    PetscCall(EqmStartFind(solver->comm, formulation->starts, formulation->domain, name, &start));
+    if (!IsDisappointing(solver, other->far_energy)) continue;
+    PetscCall(EqmStartFind(solver->comm, formulation->starts, formulation->domain, other->name, &start));
     PetscCall(TryStart(solver, start, first, suffix, attempt, count++, tried));
   }
-  PetscCall(PetscFree(names));
   if (count > 1 && solver->status == EQM_STATUS_NOT_CONVERGED && !solver->limited)
     PetscCall(PetscStrlcat(solver->message, "; other starts did no better", sizeof(solver->message)));
   PetscFunctionReturn(0);

@@ -21,6 +21,13 @@ typedef struct {
 /* Mends folds; counts them before and after. */
 typedef PetscErrorCode (*EqmUnfold)(EqmProblem, EqmIterate, PetscInt64 *before, PetscInt64 *after);
 
+/* A start that is tried where the default's leads to a map with more energy than `far_energy`, per measure of the
+   image, or with folds. */
+typedef struct {
+  const char *name;
+  PetscReal far_energy;
+} EqmOtherStart;
+
 typedef struct {
   const char *target, *domain; /* of the tables in mesh/target.c; the mesh decides between several rows of a target */
   const EqmObjective *objective;
@@ -28,11 +35,10 @@ typedef struct {
   EqmUnfold unfold, unfold_as_printed;
   PetscErrorCode (*finish)(EqmSolver); /* a last change to the map when the method has ended; NULL: none */
   EqmStartFamily starts;
-  const char *other_starts; /* tried one after the other where the default's leads far from the objective; NULL: none */
-  PetscReal far_energy;     /* per measure of the image: where the map's is above it they are tried */
-  const char *where_limbs_fold;     /* what to try there, unless the start was `resolved`; NULL: nothing special */
-  PetscBool takes_balance;          /* -balance has a meaning */
-  const EqmMethodDefaults *methods; /* the first is -method auto */
+  const EqmOtherStart *other_starts; /* one after the other, up to one without a name; NULL: none */
+  const char *where_limbs_fold;      /* what to try there, unless the start was `resolved`; NULL: nothing special */
+  PetscBool takes_balance;           /* -balance has a meaning */
+  const EqmMethodDefaults *methods;  /* the first is -method auto */
   PetscInt num_methods;
 } EqmFormulation;
 

@@ -24,11 +24,19 @@ static PetscBool StandsStill(EqmSolver solver)
   return (PetscBool)(solver->objectives[last - 1] - solver->objectives[last] <= solver->settings.energy_atol);
 }
 
+PetscReal EqmJudgePoorEnergy(EqmSolver solver)
+{
+  const PetscReal of_surfaces = 1e-2, poor = solver->problem->objective->poor_energy;
+  const PetscBool more_wanted = (PetscBool)(solver->settings.balance > 0. || solver->problem->landmarks.num_total > 0);
+
+  return solver->mesh->cell_size == 3 && !more_wanted ? PetscMin(of_surfaces, poor) : poor;
+}
+
 /* Is the map so far from equal areas that it is of no use as such? */
 static PetscBool IsPoor(EqmSolver solver)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
-  const PetscReal poor = solver->problem->objective->poor_energy;
+  const PetscReal poor = EqmJudgePoorEnergy(solver);
 
   return (PetscBool)(poor > 0. && !(totals->energy <= poor * totals->total));
 }

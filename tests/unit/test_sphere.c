@@ -195,6 +195,27 @@ static PetscErrorCode TestMeasure(Setting *s, EqmMeasureKind kind)
   PetscFunctionReturn(0);
 }
 
+/* An octant, a triangle that is larger than a hemisphere's half, one turned over; the whole sphere. */
+static PetscErrorCode TestSolidAngles(Setting *s)
+{
+  const EqmMesh mesh = s->domain->mesh;
+  const PetscReal x[3] = {1., 0., 0.}, y[3] = {0., 1., 0.}, z[3] = {0., 0., 1.}, back[3] = {-.6, -.8, 0.};
+  const PetscReal *const octant[] = {x, y, z}, *const turned[] = {y, x, z}, *const large[] = {y, back, z};
+  const PetscReal wedge = PETSC_PI - PetscAtan2Real(.6, .8); /* between y and `back`, seen from z */
+  PetscReal *a, sum = 0.;
+
+  PetscFunctionBegin;
+  CHECK_CLOSE(EqmMeasureValue(EQM_MEASURE_SOLID_ANGLE, octant), .5 * PETSC_PI, 1e-15, 1.);
+  CHECK_CLOSE(EqmMeasureValue(EQM_MEASURE_SOLID_ANGLE, turned), -.5 * PETSC_PI, 1e-15, 1.);
+  CHECK_CLOSE(EqmMeasureValue(EQM_MEASURE_SOLID_ANGLE, large), wedge, 1e-14, 1.);
+  PetscCall(PetscMalloc1(mesh->num_local_cells, &a));
+  PetscCall(EqmImageMeasureOf(s->domain, EQM_MEASURE_SOLID_ANGLE, s->place, a));
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) sum += a[c];
+  CHECK_CLOSE(TestSum(mesh->comm, sum), 4. * PETSC_PI, 1e-12, 1.);
+  PetscCall(PetscFree(a));
+  PetscFunctionReturn(0);
+}
+
 /* The normalised energy's gradient in the frames' degrees of freedom. */
 static PetscErrorCode TestEnergy(Setting *s)
 {
@@ -244,7 +265,7 @@ static PetscErrorCode TestRotations(Setting *s)
   for (PetscInt axis = 0; axis < 3; axis++) {
     const PetscReal e[3] = {axis == 0, axis == 1, axis == 2};
     for (PetscInt v = 0; v < mesh->num_local; v++) EqmCross(e, s->place->x + 3 * v, velocity + 3 * v);
-    for (int kind = EQM_MEASURE_AREA3; kind <= EQM_MEASURE_HALF_DET; kind++) {
+    for (int kind = EQM_MEASURE_AREA3; kind <= EQM_MEASURE_SOLID_ANGLE; kind++) {
       PetscCall(EqmImageDerivativesOf(s->domain, (EqmMeasureKind)kind, s->place, velocity, NULL, first, NULL));
       for (PetscInt c = 0; c < mesh->num_local_cells; c++) CHECK_CLOSE(first[c], 0., 1e-15, 1.);
     }
@@ -446,6 +467,8 @@ int main(int argc, char **argv)
   PetscCall(TestTransport(&s, 1.));
   PetscCall(TestMeasure(&s, EQM_MEASURE_AREA3));
   PetscCall(TestMeasure(&s, EQM_MEASURE_HALF_DET));
+  PetscCall(TestMeasure(&s, EQM_MEASURE_SOLID_ANGLE));
+  PetscCall(TestSolidAngles(&s));
   PetscCall(TestEnergy(&s));
   PetscCall(TestRotations(&s));
   PetscCall(TestUnfold(&s));

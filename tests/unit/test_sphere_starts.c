@@ -1,8 +1,10 @@
 /* First maps to the sphere: without folds on shapes of increasing difficulty, the same on any number of ranks, and what
    they are by definition where that is known. */
 #include "support/runs.h"
+#include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
 #include "geometry/simplex.h"
+#include "problem/term.h"
 #include <math.h>
 
 static PetscErrorCode Start(TestMesh *test, const char *options, EqmSolver *solver)
@@ -128,6 +130,44 @@ static PetscErrorCode TestHemisphereWeights(const char *kind)
   PetscFunctionReturn(0);
 }
 
+/* How unequal the solid angles of a start are, sum w (r - 1)^2. */
+static PetscErrorCode SolidAngleSquares(TestMesh *test, const char *options, PetscReal *squares)
+{
+  const EqmMesh mesh = test->mesh;
+  PetscReal *angle, sum = 0.;
+  EqmSolver solver;
+
+  PetscFunctionBegin;
+  PetscCall(Start(test, options, &solver));
+  CHECK(solver->iterate->totals.folds == 0, "%s: %d folds", options, (int)solver->iterate->totals.folds);
+  CHECK(solver->problem->domain->measure == EQM_MEASURE_AREA3, "flat areas are not back");
+  CHECK(!solver->problem->terms, "a term is left");
+  PetscCall(PetscMalloc1(mesh->num_local_cells, &angle));
+  PetscCall(EqmImageMeasureOf(solver->problem->domain, EQM_MEASURE_SOLID_ANGLE, &solver->iterate->place, angle));
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++)
+    sum += mesh->weight[c] * PetscSqr(angle[c] / (4. * PETSC_PI * mesh->weight[c]) - 1.);
+  *squares = TestSum(mesh->comm, sum);
+  PetscCall(PetscFree(angle));
+  PetscCall(EqmSolverDestroy(&solver));
+  PetscFunctionReturn(0);
+}
+
+/* Where there are limbs the start by solid angles makes these nearly equal, which the cascade it comes from does not.
+ */
+static PetscErrorCode TestSolidAngleStart(void)
+{
+  TestMesh test;
+  PetscReal before, after;
+
+  PetscFunctionBegin;
+  PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "starfish", 900, 1, &test));
+  PetscCall(SolidAngleSquares(&test, "-start cascade", &before));
+  PetscCall(SolidAngleSquares(&test, "-start solid-angle", &after));
+  CHECK(after < .2 * before, "from %g to %g", (double)before, (double)after);
+  PetscCall(TestMeshDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
 /* -start_center leaves no mass centre. */
 static PetscErrorCode TestCentered(const char *start)
 {
@@ -184,6 +224,7 @@ int main(int argc, char **argv)
   PetscCall(TestRanks("-start gauss"));
   PetscCall(TestRanks("-start tutte"));
   PetscCall(TestRanks("-start tutte -start_weights mean-value"));
+  PetscCall(TestSolidAngleStart());
   PetscCall(TestCentered("-start tutte -start_center"));
   PetscCall(TestCentered("-start linear -start_center"));
   PetscCall(TestFixedPointEnds());
