@@ -95,8 +95,8 @@ static PetscErrorCode TestDamage(Thing *there, Thing *back, char *bytes, size_t 
 
   PetscFunctionBegin;
   for (size_t k = 0; k < FLIPS; k++) {
-    const size_t at = (size_t)(TestRandom(7, (PetscInt)k, 0) * (PetscReal)length) % length;
-    const int bit = 1 << (int)(TestRandom(7, (PetscInt)k, 1) * 7.99);
+    const size_t at = (size_t)((.5 + .5 * TestRandom(7, (PetscInt)k, 0)) * (PetscReal)length) % length;
+    const int bit = 1 << (int)((.5 + .5 * TestRandom(7, (PetscInt)k, 1)) * 7.99);
 
     bytes[at] = (char)(bytes[at] ^ bit);
     PetscCall(Put(bytes, length));
