@@ -115,6 +115,7 @@ typedef struct {
   PetscInt64 coupled_factorizations; /* those of matrices that couple the coordinates */
   PetscInt64 solves;                 /* right-hand sides solved */
   PetscInt64 cg_iterations;          /* of iterative solves */
+  PetscInt64 set_ups;                /* of multigrid on a hierarchy of meshes */
 } EqmWork;
 
 /* Clocks and counters of a run. One per run; every object that works holds a reference to it. */

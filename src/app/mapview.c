@@ -6,12 +6,18 @@
 /* What it took. */
 static PetscErrorCode PrintWork(MPI_Comm comm, const EqmMapCost *cost)
 {
+  char cycles[96] = "";
+
   PetscFunctionBegin;
+  if (cost->work.set_ups > 0)
+    PetscCall(PetscSNPrintf(cycles, sizeof(cycles),
+                            " by %" PetscInt64_FMT " cycles with %" PetscInt64_FMT " set-ups of the hierarchy",
+                            cost->work.cg_iterations, cost->work.set_ups));
   PetscCall(PetscPrintf(comm,
                         "  work          %" PetscInt64_FMT " evaluations, %" PetscInt64_FMT
-                        " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves\n",
+                        " factorisations (%" PetscInt64_FMT " coupled), %" PetscInt64_FMT " solves%s\n",
                         cost->work.evaluations, cost->work.factorizations, cost->work.coupled_factorizations,
-                        cost->work.solves));
+                        cost->work.solves, cycles));
   PetscCall(PetscPrintf(comm,
                         "  seconds       %.2f: read %.2f, diagnose %.2f, distribute %.2f, start %.2f, minimise %.2f, "
                         "measure %.2f, write %.2f\n",

@@ -1,7 +1,7 @@
 #include "hierarchy/blockmatrix.h"
 
-/* Fewer rows are not worth the threads; a piece of a sweep has so many. */
-enum { LEAST_ROWS = 4096, ROWS_OF_PIECE = 8192 };
+/* Fewer rows are not worth the threads. */
+enum { LEAST_ROWS = 4096 };
 
 PetscErrorCode EqmBlockMatrixReset(EqmBlockMatrix *matrix)
 {
@@ -10,95 +10,39 @@ PetscErrorCode EqmBlockMatrixReset(EqmBlockMatrix *matrix)
   PetscCall(PetscFree(matrix->column));
   PetscCall(PetscFree(matrix->diagonal));
   PetscCall(PetscFree(matrix->entry));
-  PetscCall(PetscFree(matrix->inverse));
+  PetscCall(PetscFree(matrix->mirror));
   PetscFunctionReturn(0);
-}
-
-/* One row times x, the columns begin .. end - 1 of it. */
-static inline void MultiplyRow(const EqmBlockMatrix *a, PetscInt i, PetscInt begin, PetscInt end, const PetscReal *x,
-                               PetscReal sum[2])
-{
-  sum[0] = sum[1] = 0.;
-  for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++) {
-    const PetscInt j = a->column[q];
-    if (j >= begin && j < end) EqmBlockAddApplied(&a->entry[q], x + 2 * j, sum);
-  }
 }
 
 void EqmBlockMatrixMultiply(const EqmBlockMatrix *a, const PetscReal *x, PetscReal *y)
 {
 #pragma omp parallel for schedule(static) if (a->num_rows > LEAST_ROWS)
   for (PetscInt i = 0; i < a->num_rows; i++) {
-    MultiplyRow(a, i, 0, a->num_rows, x, y + 2 * i);
+    PetscReal sum[2] = {0., 0.};
+    for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++)
+      EqmBlockAddApplied(&a->entry[q], x + 2 * a->column[q], sum);
+    y[2 * i] = sum[0];
+    y[2 * i + 1] = sum[1];
   }
 }
 
-void EqmBlockMatrixResidual(const EqmBlockMatrix *a, const PetscReal *b, const PetscReal *x, PetscReal *r)
-{
-#pragma omp parallel for schedule(static) if (a->num_rows > LEAST_ROWS)
-  for (PetscInt i = 0; i < a->num_rows; i++) {
-    PetscReal sum[2];
-    MultiplyRow(a, i, 0, a->num_rows, x, sum);
-    r[2 * i] = b[2 * i] - sum[0];
-    r[2 * i + 1] = b[2 * i + 1] - sum[1];
-  }
-}
-
-PetscErrorCode EqmBlockMatrixInvertDiagonal(EqmBlockMatrix *a, PetscBool *success)
+PetscErrorCode EqmBlockMatrixCompleteDiagonal(EqmBlockMatrix *a, PetscBool *success)
 {
   int bad = 0;
 
   PetscFunctionBegin;
-  if (!a->inverse) PetscCall(PetscMalloc1(a->num_rows, &a->inverse));
 #pragma omp parallel for schedule(static) reduction(| : bad) if (a->num_rows > LEAST_ROWS)
   for (PetscInt i = 0; i < a->num_rows; i++) {
     PetscReal *const d = a->entry[a->diagonal[i]].e;
     if (d[0] == 0. && d[1] == 0.) d[0] = 1.;
     if (d[3] == 0. && d[1] == 0.) d[3] = 1.;
-    const PetscReal det = d[0] * d[3] - d[1] * d[2];
-    bad |= !(d[0] > 0. && det > 0.);
-    a->inverse[i] = (EqmBlock){{d[3] / det, -d[1] / det, -d[2] / det, d[0] / det}};
+    bad |= !(d[0] > 0. && d[0] * d[3] - d[1] * d[2] > 0.);
   }
   *success = (PetscBool)!bad;
   PetscFunctionReturn(0);
 }
 
-/* One row of a sweep: what the columns begin .. end - 1 have already goes to the right-hand side. */
-static inline void SweepRow(const EqmBlockMatrix *a, PetscInt i, PetscInt begin, PetscInt end, const PetscReal *b,
-                            PetscReal *x)
-{
-  PetscReal sum[2], right[2], value[2] = {0., 0.};
-
-  MultiplyRow(a, i, begin, end, x, sum);
-  right[0] = b[2 * i] - sum[0];
-  right[1] = b[2 * i + 1] - sum[1];
-  EqmBlockAddApplied(&a->inverse[i], right, value);
-  x[2 * i] = value[0];
-  x[2 * i + 1] = value[1];
-}
-
-void EqmBlockMatrixSweepForward(const EqmBlockMatrix *a, const PetscReal *b, PetscReal *x)
-{
-  const PetscInt rows = ROWS_OF_PIECE;
-
-#pragma omp parallel for schedule(dynamic) if (a->num_rows > LEAST_ROWS)
-  for (PetscInt begin = 0; begin < a->num_rows; begin += rows) {
-    for (PetscInt i = begin; i < PetscMin(begin + rows, a->num_rows); i++) SweepRow(a, i, begin, i, b, x);
-  }
-}
-
-void EqmBlockMatrixSweepBackward(const EqmBlockMatrix *a, const PetscReal *b, PetscReal *x)
-{
-  const PetscInt rows = ROWS_OF_PIECE;
-
-#pragma omp parallel for schedule(dynamic) if (a->num_rows > LEAST_ROWS)
-  for (PetscInt begin = 0; begin < a->num_rows; begin += rows) {
-    const PetscInt end = PetscMin(begin + rows, a->num_rows);
-    for (PetscInt i = end - 1; i >= begin; i--) SweepRow(a, i, i + 1, end, b, x);
-  }
-}
-
-/* As scalar rows with ascending columns, `rank` a row's columns in order. */
+/* As scalar rows with ascending columns. */
 static PetscErrorCode MakeScalarRows(const EqmBlockMatrix *a, EqmBlockFactor *factor)
 {
   const PetscInt n = a->num_rows;
@@ -109,6 +53,7 @@ static PetscErrorCode MakeScalarRows(const EqmBlockMatrix *a, EqmBlockFactor *fa
   PetscCall(PetscMalloc2(most, &column, most, &place));
   PetscCall(PetscMalloc1(2 * n + 1, &factor->row));
   PetscCall(PetscMalloc1(4 * a->start[n], &factor->column));
+  PetscCall(PetscMalloc1(4 * a->start[n], &factor->place));
   PetscCall(PetscMalloc1(4 * a->start[n], &factor->value));
   for (PetscInt r = 0; r < 2 * n; r++) {
     const PetscInt i = r / 2, begin = a->start[i], count = a->start[i + 1] - begin;
@@ -120,7 +65,7 @@ static PetscErrorCode MakeScalarRows(const EqmBlockMatrix *a, EqmBlockFactor *fa
     factor->row[r] = at;
     for (PetscInt k = 0; k < 2 * count; k++) {
       factor->column[at] = 2 * column[k / 2] + k % 2;
-      factor->value[at++] = a->entry[place[k / 2]].e[2 * (r % 2) + k % 2];
+      factor->place[at++] = 4 * place[k / 2] + 2 * (r % 2) + k % 2;
     }
   }
   factor->row[2 * n] = at;
@@ -128,10 +73,9 @@ static PetscErrorCode MakeScalarRows(const EqmBlockMatrix *a, EqmBlockFactor *fa
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmBlockFactorCreate(const EqmBlockMatrix *a, EqmBlockFactor *factor, PetscBool *success)
+PetscErrorCode EqmBlockFactorCreate(const EqmBlockMatrix *a, EqmBlockFactor *factor)
 {
   const PetscInt n = 2 * a->num_rows;
-  PCFailedReason reason;
   PC pc;
 
   PetscFunctionBegin;
@@ -141,11 +85,26 @@ PetscErrorCode EqmBlockFactorCreate(const EqmBlockMatrix *a, EqmBlockFactor *fac
   PetscCall(MatSetOption(factor->matrix, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(KSPCreate(PETSC_COMM_SELF, &factor->ksp));
   PetscCall(KSPSetType(factor->ksp, KSPPREONLY));
-  PetscCall(KSPSetOperators(factor->ksp, factor->matrix, factor->matrix));
   PetscCall(KSPGetPC(factor->ksp, &pc));
   PetscCall(PCSetType(pc, PCCHOLESKY));
   PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmBlockFactorFill(const EqmBlockMatrix *a, EqmBlockFactor *factor, PetscBool *success)
+{
+  const PetscInt length = factor->row[2 * a->num_rows];
+  PCFailedReason reason;
+  PetscScalar *value;
+  PC pc;
+
+  PetscFunctionBegin;
+  PetscCall(MatSeqAIJGetArray(factor->matrix, &value));
+  for (PetscInt q = 0; q < length; q++) value[q] = a->entry[factor->place[q] / 4].e[factor->place[q] % 4];
+  PetscCall(MatSeqAIJRestoreArray(factor->matrix, &value));
+  PetscCall(KSPSetOperators(factor->ksp, factor->matrix, factor->matrix));
   PetscCall(KSPSetUp(factor->ksp));
+  PetscCall(KSPGetPC(factor->ksp, &pc));
   PetscCall(PCGetFailedReason(pc, &reason));
   *success = (PetscBool)(reason == PC_NOERROR);
   PetscFunctionReturn(0);
@@ -158,6 +117,7 @@ PetscErrorCode EqmBlockFactorDestroy(EqmBlockFactor *factor)
   PetscCall(MatDestroy(&factor->matrix));
   PetscCall(PetscFree(factor->row));
   PetscCall(PetscFree(factor->column));
+  PetscCall(PetscFree(factor->place));
   PetscCall(PetscFree(factor->value));
   PetscFunctionReturn(0);
 }

@@ -13,36 +13,32 @@ typedef struct {
 
 typedef struct {
   PetscInt num_rows;
-  PetscInt *start, *column;  /* num_rows + 1; start[num_rows] */
-  PetscInt *diagonal;        /* per row: where its diagonal block is */
-  EqmBlock *entry, *inverse; /* start[num_rows]; per row: the diagonal block's inverse, NULL until it is asked for */
+  PetscInt *start, *column; /* num_rows + 1; start[num_rows] */
+  PetscInt *diagonal;       /* per row: where its diagonal block is */
+  PetscInt *mirror;         /* per entry before the diagonal: where its transpose is; NULL: not known */
+  EqmBlock *entry;          /* start[num_rows] */
 } EqmBlockMatrix;
 
 PETSC_INTERN PetscErrorCode EqmBlockMatrixReset(EqmBlockMatrix *matrix);
 /* y = A x; vectors have two numbers per row. Not collective. */
 PETSC_INTERN void EqmBlockMatrixMultiply(const EqmBlockMatrix *matrix, const PetscReal *x, PetscReal *y);
-/* r = b - A x. Not collective. */
-PETSC_INTERN void EqmBlockMatrixResidual(const EqmBlockMatrix *matrix, const PetscReal *b, const PetscReal *x,
-                                         PetscReal *r);
-/* Ones in the place of unknowns that are not there, then the inverses of the diagonal blocks. `success` is false where
-   one is not positive definite. Not collective. */
-PETSC_INTERN PetscErrorCode EqmBlockMatrixInvertDiagonal(EqmBlockMatrix *matrix, PetscBool *success);
-/* One Gauss-Seidel sweep from zero within pieces of consecutive rows, whose number depends on the matrix alone: x =
-   M^-1 b with the lower triangles of the pieces, or with the upper ones, the transpose. Not collective. */
-PETSC_INTERN void EqmBlockMatrixSweepForward(const EqmBlockMatrix *matrix, const PetscReal *b, PetscReal *x);
-PETSC_INTERN void EqmBlockMatrixSweepBackward(const EqmBlockMatrix *matrix, const PetscReal *b, PetscReal *x);
+/* Ones in the place of unknowns that are not there; `success` is false where a diagonal block is not positive definite.
+   Not collective. */
+PETSC_INTERN PetscErrorCode EqmBlockMatrixCompleteDiagonal(EqmBlockMatrix *matrix, PetscBool *success);
 
 /* PETSc's own Cholesky factor of such a matrix, for some thousand rows. */
 typedef struct {
-  PetscInt *row, *column;
+  PetscInt *row, *column, *place; /* scalar rows; where the values are among the matrix's */
   PetscReal *value;
   Mat matrix;
   KSP ksp;
 } EqmBlockFactor;
-/* `success` is false where the matrix is not positive definite. Not collective. */
-PETSC_INTERN PetscErrorCode EqmBlockFactorCreate(const EqmBlockMatrix *matrix, EqmBlockFactor *factor,
-                                                 PetscBool *success);
+/* The pattern's; then the entries of matrices that have it, again and again. `success` is false where the matrix is not
+   positive definite. Not collective. */
+PETSC_INTERN PetscErrorCode EqmBlockFactorCreate(const EqmBlockMatrix *pattern, EqmBlockFactor *factor);
 PETSC_INTERN PetscErrorCode EqmBlockFactorDestroy(EqmBlockFactor *factor);
+PETSC_INTERN PetscErrorCode EqmBlockFactorFill(const EqmBlockMatrix *matrix, EqmBlockFactor *factor,
+                                               PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmBlockFactorSolve(const EqmBlockFactor *factor, PetscReal *b, PetscReal *x,
                                                 PetscBool *success);
 

@@ -1,64 +1,86 @@
-/* Multigrid on the levels of a hierarchy: Galerkin products, one sweep before and its transpose after, so that a cycle
-   is a symmetric operator; conjugate gradients by PETSc. */
-#include "hierarchy/levelsystem.h"
+#include "hierarchy/cycle.h"
 
 typedef struct {
   const EqmBlockMatrix *matrix;
   EqmBlockMatrix own; /* of levels below the finest */
+  EqmSweeps sweeps;   /* of levels above the coarsest */
   const EqmProlongation *from_below;
   PetscReal *b, *x, *r;
 } Level;
 
-typedef struct {
+struct _p_EqmCycle {
   PetscInt num_levels;
   Level *level;
   EqmBlockFactor factor; /* of the coarsest */
-} Cycle;
+};
 
-static PetscErrorCode CycleCreate(const EqmBlockMatrix *finest, PetscInt num_prolongations, const EqmProlongation *p,
-                                  Cycle *cycle, PetscBool *success)
+PetscErrorCode EqmCycleCreate(const EqmBlockMatrix *finest, PetscInt num_prolongations, const EqmProlongation *p,
+                              EqmCycle *out)
 {
   const PetscInt last = num_prolongations;
+  EqmCycle cycle;
 
   PetscFunctionBegin;
-  *success = PETSC_TRUE;
-  *cycle = (Cycle){.num_levels = last + 1};
+  PetscCall(PetscNew(&cycle));
+  cycle->num_levels = last + 1;
   PetscCall(PetscCalloc1(cycle->num_levels, &cycle->level));
   for (PetscInt k = 0; k <= last; k++) {
     Level *const level = &cycle->level[k];
-    PetscBool definite = PETSC_TRUE;
     level->matrix = k == 0 ? finest : &level->own;
     level->from_below = k < last ? &p[k] : NULL;
-    if (k > 0) PetscCall(EqmProlongationGalerkin(&p[k - 1], cycle->level[k - 1].matrix, &level->own));
-    if (k > 0) PetscCall(EqmBlockMatrixInvertDiagonal(&level->own, &definite));
-    *success = (PetscBool)(*success && definite);
+    if (k > 0) PetscCall(EqmProlongationGalerkinPattern(&p[k - 1], cycle->level[k - 1].matrix, &level->own));
+    if (k < last) PetscCall(EqmSweepsCreate(level->matrix, &level->sweeps));
     PetscCall(PetscMalloc1(2 * level->matrix->num_rows, &level->b));
     PetscCall(PetscMalloc1(2 * level->matrix->num_rows, &level->x));
     PetscCall(PetscMalloc1(2 * level->matrix->num_rows, &level->r));
   }
-  if (*success) PetscCall(EqmBlockFactorCreate(cycle->level[last].matrix, &cycle->factor, success));
+  PetscCall(EqmBlockFactorCreate(cycle->level[last].matrix, &cycle->factor));
+  *out = cycle;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CycleDestroy(Cycle *cycle)
+PetscErrorCode EqmCycleFill(EqmCycle cycle, PetscBool *success)
 {
+  const PetscInt last = cycle->num_levels - 1;
+
   PetscFunctionBegin;
+  *success = PETSC_TRUE;
+  for (PetscInt k = 0; k <= last; k++) {
+    Level *const level = &cycle->level[k];
+    if (k > 0) {
+      PetscCall(EqmProlongationGalerkinFill(level[-1].from_below, level[-1].matrix, &level->own));
+      PetscCall(EqmBlockMatrixCompleteDiagonal(&level->own, success));
+      if (!*success) PetscFunctionReturn(0);
+    }
+    if (k < last) EqmSweepsFill(&level->sweeps, level->matrix);
+  }
+  PetscCall(EqmBlockFactorFill(cycle->level[last].matrix, &cycle->factor, success));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmCycleDestroy(EqmCycle *out)
+{
+  EqmCycle cycle = *out;
+
+  PetscFunctionBegin;
+  if (!cycle) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < cycle->num_levels; k++) {
     PetscCall(EqmBlockMatrixReset(&cycle->level[k].own));
+    PetscCall(EqmSweepsDestroy(&cycle->level[k].sweeps));
     PetscCall(PetscFree(cycle->level[k].b));
     PetscCall(PetscFree(cycle->level[k].x));
     PetscCall(PetscFree(cycle->level[k].r));
   }
   PetscCall(EqmBlockFactorDestroy(&cycle->factor));
   PetscCall(PetscFree(cycle->level));
+  PetscCall(PetscFree(*out));
   PetscFunctionReturn(0);
 }
 
 /* x = B b on a level and those below. */
-static PetscErrorCode Descend(Cycle *cycle, PetscInt k, PetscReal *b, PetscReal *x)
+static PetscErrorCode Descend(EqmCycle cycle, PetscInt k, PetscReal *b, PetscReal *x)
 {
   Level *const level = &cycle->level[k];
-  const PetscInt n = level->matrix->num_rows;
 
   PetscFunctionBegin;
   if (k + 1 == cycle->num_levels) {
@@ -66,14 +88,11 @@ static PetscErrorCode Descend(Cycle *cycle, PetscInt k, PetscReal *b, PetscReal 
     PetscCall(EqmBlockFactorSolve(&cycle->factor, b, x, &success));
     PetscFunctionReturn(0);
   }
-  EqmBlockMatrixSweepForward(level->matrix, b, x);
-  EqmBlockMatrixResidual(level->matrix, b, x, level->r);
+  EqmSweepForward(&level->sweeps, b, x, level->r);
   EqmProlongationRestrict(level->from_below, level->r, level[1].b);
   PetscCall(Descend(cycle, k + 1, level[1].b, level[1].x));
   EqmProlongationAdd(level->from_below, level[1].x, x);
-  EqmBlockMatrixResidual(level->matrix, b, x, level->r);
-  EqmBlockMatrixSweepBackward(level->matrix, level->r, level->b); /* where b is this, nobody needs it any more */
-  for (PetscInt i = 0; i < 2 * n; i++) x[i] += level->b[i];
+  EqmSweepBackward(&level->sweeps, b, x, level->r);
   PetscFunctionReturn(0);
 }
 
@@ -95,7 +114,7 @@ static PetscErrorCode MultiplyShell(Mat shell, Vec x, Vec y)
 
 static PetscErrorCode ApplyShell(PC shell, Vec b, Vec x)
 {
-  Cycle *cycle;
+  EqmCycle cycle;
   PetscScalar *from, *to;
 
   PetscFunctionBegin;
@@ -108,12 +127,11 @@ static PetscErrorCode ApplyShell(PC shell, Vec b, Vec x)
   PetscFunctionReturn(0);
 }
 
-/* PETSc's conjugate gradients with the cycle. */
-static PetscErrorCode SolveWithCycle(EqmLevelSystem *system, Cycle *cycle, PetscReal tolerance, PetscInt *iterations,
-                                     PetscBool *success)
+PetscErrorCode EqmCycleSolve(EqmCycle cycle, PetscReal *b, PetscReal *x, PetscReal tolerance, PetscInt *iterations,
+                             PetscBool *success)
 {
   enum { MOST_ITERATIONS = 60 };
-  const PetscInt n = 2 * system->matrix.num_rows;
+  const PetscInt n = 2 * cycle->level[0].matrix->num_rows;
   KSPConvergedReason reason;
   Vec right, solution;
   Mat shell;
@@ -121,10 +139,10 @@ static PetscErrorCode SolveWithCycle(EqmLevelSystem *system, Cycle *cycle, Petsc
   PC pc;
 
   PetscFunctionBegin;
-  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, (void *)&system->matrix, &shell));
+  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, (void *)cycle->level[0].matrix, &shell));
   PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))MultiplyShell));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, system->right, &right));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, system->solution, &solution));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, b, &right));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, x, &solution));
   PetscCall(KSPCreate(PETSC_COMM_SELF, &ksp));
   PetscCall(KSPSetType(ksp, KSPCG));
   PetscCall(KSPSetNormType(ksp, KSP_NORM_NATURAL));
@@ -149,12 +167,13 @@ PetscErrorCode EqmLevelSystemMultigridSolve(EqmLevelSystem *system, PetscInt num
                                             const EqmProlongation *prolongation, PetscReal tolerance,
                                             PetscInt *iterations, PetscBool *success)
 {
-  Cycle cycle;
+  EqmCycle cycle;
 
   PetscFunctionBegin;
   *iterations = 0;
-  PetscCall(CycleCreate(&system->matrix, num_prolongations, prolongation, &cycle, success));
-  if (*success) PetscCall(SolveWithCycle(system, &cycle, tolerance, iterations, success));
-  PetscCall(CycleDestroy(&cycle));
+  PetscCall(EqmCycleCreate(&system->matrix, num_prolongations, prolongation, &cycle));
+  PetscCall(EqmCycleFill(cycle, success));
+  if (*success) PetscCall(EqmCycleSolve(cycle, system->right, system->solution, tolerance, iterations, success));
+  PetscCall(EqmCycleDestroy(&cycle));
   PetscFunctionReturn(0);
 }

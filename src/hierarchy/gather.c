@@ -96,8 +96,9 @@ static PetscErrorCode GatherVertices(EqmMesh mesh, const PetscBool *corner, EqmH
 
 /* Cells in the order of their first vertices; weights are bounded below, so that they are not lost to rounding.
  * Collective. */
-static PetscErrorCode GatherCells(EqmMesh mesh, const PetscInt *number, EqmHierarchyLevel *level)
+static PetscErrorCode GatherCells(EqmMesh mesh, const PetscInt *number, EqmHierarchy hierarchy)
 {
+  EqmHierarchyLevel *const level = &hierarchy->level[0];
   const PetscInt m = mesh->rank == 0 ? mesh->num_cells : 0, owned = mesh->num_owned_cells;
   const PetscReal least = 1e-12 / PetscMax(m, 1);
   PetscInt *corners, *all, *input;
@@ -120,8 +121,10 @@ static PetscErrorCode GatherCells(EqmMesh mesh, const PetscInt *number, EqmHiera
   EqmSort(items, m, sizeof(*items), CompareItems);
   PetscCall(PetscMalloc1(3 * m, &level->cells));
   PetscCall(PetscMalloc1(m, &level->weight));
+  PetscCall(PetscMalloc1(m, &hierarchy->cell_order));
   level->num_cells = m;
   for (PetscInt c = 0; c < m; c++) {
+    hierarchy->cell_order[c] = items[c].at;
     PetscCall(PetscArraycpy(level->cells + 3 * c, all + 3 * items[c].at, 3));
     level->weight[c] = PetscMax(weight[items[c].at], least);
     sum += level->weight[c];
@@ -137,7 +140,7 @@ PetscErrorCode EqmGatherFinest(EqmMesh mesh, const PetscBool *corner, EqmHierarc
 
   PetscFunctionBegin;
   PetscCall(GatherVertices(mesh, corner, hierarchy, &number));
-  PetscCall(GatherCells(mesh, number, &hierarchy->level[0]));
+  PetscCall(GatherCells(mesh, number, hierarchy));
   PetscCall(PetscFree(number));
   PetscFunctionReturn(0);
 }

@@ -91,6 +91,7 @@ PetscErrorCode EqmHierarchyDestroy(EqmHierarchy *hierarchy)
   if (!*hierarchy) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < EQM_MOST_LEVELS; k++) PetscCall(EqmLevelReset(&(*hierarchy)->level[k]));
   PetscCall(PetscFree((*hierarchy)->order));
+  PetscCall(PetscFree((*hierarchy)->cell_order));
   PetscCall(PetscFree(*hierarchy));
   PetscFunctionReturn(0);
 }

@@ -47,6 +47,8 @@ struct _p_EqmHierarchy {
   PetscInt num_levels; /* 0 on all ranks but the first; level 0 is the finest */
   EqmHierarchyLevel level[EQM_MOST_LEVELS];
   PetscInt *order; /* global number in the mesh of each vertex of level 0 */
+  PetscInt
+      *cell_order; /* place of each cell of level 0 among the owned cells of all ranks, one rank's after the other */
 };
 
 typedef struct {

@@ -6,6 +6,7 @@ PetscErrorCode EqmLevelMapCreate(const EqmHierarchyLevel *level, EqmCascadeTarge
   PetscFunctionBegin;
   map->level = level;
   map->dim = target == EQM_TARGET_SPHERE ? 3 : 2;
+  map->frame = NULL;
   map->epsilon = 0.;
   map->total = target == EQM_TARGET_SPHERE ? 4. * PETSC_PI : target == EQM_TARGET_DISK ? PETSC_PI : 1.;
   PetscCall(PetscMalloc1(map->dim * level->num_vertices, &map->x));

@@ -22,11 +22,12 @@ typedef enum {
 
 typedef struct {
   const EqmHierarchyLevel *level;
-  PetscInt dim;          /* coordinates of a place: 2, or 3 on the sphere */
-  unsigned char *motion; /* an EqmMotion per vertex */
-  PetscReal *x;          /* dim per vertex */
-  PetscReal epsilon;     /* weight of the angle energy */
-  PetscReal total;       /* A of the map at its last evaluation */
+  PetscInt dim;           /* coordinates of a place: 2, or 3 on the sphere */
+  unsigned char *motion;  /* an EqmMotion per vertex */
+  PetscReal *x;           /* dim per vertex */
+  const PetscReal *frame; /* 2 dim per vertex: directions of its motion, orthonormal; NULL: those of EqmMotionFrame */
+  PetscReal epsilon;      /* weight of the angle energy */
+  PetscReal total;        /* A of the map at its last evaluation */
 } EqmLevelMap;
 
 typedef struct {

@@ -154,7 +154,7 @@ PetscErrorCode EqmLevelSystemEnd(EqmLevelSystem *system, PetscReal shift, PetscB
     matrix->entry[matrix->diagonal[v]].e[0] *= 1. + shift;
     matrix->entry[matrix->diagonal[v]].e[3] *= 1. + shift;
   }
-  PetscCall(EqmBlockMatrixInvertDiagonal(matrix, success));
+  PetscCall(EqmBlockMatrixCompleteDiagonal(matrix, success));
   PetscFunctionReturn(0);
 }
 
@@ -163,7 +163,8 @@ PetscErrorCode EqmLevelSystemFactorSolve(EqmLevelSystem *system, PetscBool *succ
   EqmBlockFactor factor;
 
   PetscFunctionBegin;
-  PetscCall(EqmBlockFactorCreate(&system->matrix, &factor, success));
+  PetscCall(EqmBlockFactorCreate(&system->matrix, &factor));
+  PetscCall(EqmBlockFactorFill(&system->matrix, &factor, success));
   if (*success) PetscCall(EqmBlockFactorSolve(&factor, system->right, system->solution, success));
   PetscCall(EqmBlockFactorDestroy(&factor));
   PetscFunctionReturn(0);

@@ -1,5 +1,6 @@
 /* From motions of a coarser level to those of a finer one. */
 #include "hierarchy/prolongation.h"
+#include <string.h>
 
 enum { WIDTH = EQM_PROLONGATION_WIDTH, MOST_CANDIDATES = 10, MOST_SEEN = WIDTH * EQM_MOST_RECORD };
 
@@ -154,6 +155,7 @@ static void SetRow(const EqmLevelMap *map, PetscInt v, const Row *row, const Pet
   PetscReal to[6], from[6];
   const PetscInt dim = map->dim, count = EqmMotionFrame((EqmMotion)map->motion[v], map->x + dim * v, to);
 
+  if (map->frame) memcpy(to, map->frame + 2 * dim * v, 2 * dim * sizeof(PetscReal));
   for (PetscInt j = 0; j < WIDTH; j++) {
     const PetscInt u = j < row->count ? row->vertex[j] : -1;
     const PetscInt moves = u < 0 ? 0 : EqmMotionFrame((EqmMotion)map->motion[u], map->x + dim * u, from);
@@ -167,6 +169,17 @@ static void SetRow(const EqmLevelMap *map, PetscInt v, const Row *row, const Pet
       }
     }
   }
+}
+
+static unsigned char IsPlain(const EqmBlock *entry)
+{
+  PetscBool plain = PETSC_TRUE;
+
+  for (PetscInt j = 0; j < WIDTH; j++) {
+    const PetscReal *const e = entry[j].e;
+    plain = (PetscBool)(plain && e[1] == 0. && e[2] == 0. && e[0] == e[3]);
+  }
+  return (unsigned char)plain;
 }
 
 /* By columns, too. */
@@ -199,9 +212,13 @@ PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap
   PetscCall(PetscMalloc2(n, &number, n, &rows));
   PetscCall(PetscMalloc1(WIDTH * n, &p->column));
   PetscCall(PetscMalloc1(WIDTH * n, &p->entry));
+  PetscCall(PetscMalloc1(n, &p->plain));
   for (PetscInt c = 0; c < m; c++) number[coarser->level->finer[c]] = c;
   PetscCall(MakeRows(finer, coarser, rows));
-  for (PetscInt v = 0; v < n; v++) SetRow(finer, v, &rows[v], number, p->column + WIDTH * v, p->entry + WIDTH * v);
+  for (PetscInt v = 0; v < n; v++) {
+    SetRow(finer, v, &rows[v], number, p->column + WIDTH * v, p->entry + WIDTH * v);
+    p->plain[v] = IsPlain(p->entry + WIDTH * v);
+  }
   PetscCall(PetscFree2(number, rows));
   PetscCall(Transpose(p));
   PetscFunctionReturn(0);
@@ -212,6 +229,7 @@ PetscErrorCode EqmProlongationDestroy(EqmProlongation *p)
   PetscFunctionBegin;
   PetscCall(PetscFree(p->column));
   PetscCall(PetscFree(p->entry));
+  PetscCall(PetscFree(p->plain));
   PetscCall(PetscFree(p->start));
   PetscCall(PetscFree(p->from));
   PetscFunctionReturn(0);

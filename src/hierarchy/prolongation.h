@@ -13,6 +13,7 @@ typedef struct {
   PetscInt num_fine, num_coarse;
   PetscInt *column;       /* EQM_PROLONGATION_WIDTH per fine vertex: coarse vertices; -1: none */
   EqmBlock *entry;        /* for each of these */
+  unsigned char *plain;   /* per fine vertex: its blocks are multiples of one */
   PetscInt *start, *from; /* per coarse vertex: which of these are its */
 } EqmProlongation;
 
@@ -33,8 +34,11 @@ PETSC_INTERN PetscErrorCode EqmProlongationDestroy(EqmProlongation *prolongation
 PETSC_INTERN void EqmProlongationAdd(const EqmProlongation *prolongation, const PetscReal *coarse, PetscReal *fine);
 PETSC_INTERN void EqmProlongationRestrict(const EqmProlongation *prolongation, const PetscReal *fine,
                                           PetscReal *coarse);
-/* P^T A P. Not collective. */
-PETSC_INTERN PetscErrorCode EqmProlongationGalerkin(const EqmProlongation *prolongation, const EqmBlockMatrix *fine,
-                                                    EqmBlockMatrix *coarse);
+/* P^T A P: its pattern, which that of A tells, and its entries for the present ones of A, symmetric to the last bit.
+   Not collective. */
+PETSC_INTERN PetscErrorCode EqmProlongationGalerkinPattern(const EqmProlongation *prolongation,
+                                                           const EqmBlockMatrix *fine, EqmBlockMatrix *coarse);
+PETSC_INTERN PetscErrorCode EqmProlongationGalerkinFill(const EqmProlongation *prolongation, const EqmBlockMatrix *fine,
+                                                        EqmBlockMatrix *coarse);
 
 #endif

@@ -71,7 +71,8 @@ typedef enum {
   EQM_SOLVER_SUBSTRUCTURE,
   EQM_SOLVER_MUMPS,
   EQM_SOLVER_MULTIGRID,
-  EQM_SOLVER_PETSC
+  EQM_SOLVER_PETSC,
+  EQM_SOLVER_HIERARCHY
 } EqmSolverKind;
 PETSC_INTERN const char *const EqmSolverKinds[];
 
@@ -107,8 +108,9 @@ struct _p_EqmLinear {
   EqmMatrixUse use;
   PetscInt num_owned, num_unknowns;
   EqmUnknowns unknowns;
-  EqmUnknowns rows; /* of the matrix: the unknowns, unless the kind wants others */
-  EqmAssembly assembly;
+  EqmUnknowns rows;     /* of the matrix: the unknowns, unless the kind wants others */
+  EqmAssembly assembly; /* NULL: the kind assembles by itself */
+  PetscReal diagonal_factor;
   EqmCellMatrix cell_matrix, padded_cell; /* the caller's, during a filling; the kind's own over it, or NULL */
   void *context;
   PetscBool is_single; /* factors are kept in single precision, where the kind has a choice */
@@ -120,7 +122,8 @@ struct _p_EqmLinear {
   void *data;
   PetscErrorCode (*analyse)(EqmLinear, EqmOrdering);
   PetscErrorCode (*factor)(EqmLinear, PetscBool *success);
-  PetscErrorCode (*set_fields)(EqmLinear, PetscInt count, const PetscReal *fields); /* may be NULL */
+  PetscErrorCode (*set_fields)(EqmLinear, PetscInt count, const PetscReal *fields);                 /* may be NULL */
+  PetscErrorCode (*set_image)(EqmLinear, PetscInt dim, const PetscReal *x, const PetscReal *frame); /* may be NULL */
   PetscErrorCode (*solve)(EqmLinear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success);
   PetscErrorCode (*apply)(EqmLinear, PetscInt num_rhs, const PetscReal *b, PetscReal *x); /* NULL: solve */
   PetscErrorCode (*destroy)(EqmLinear);
@@ -140,6 +143,11 @@ PETSC_INTERN PetscErrorCode EqmOptionsPushDefaults(const char *const defaults[][
 PETSC_INTERN PetscErrorCode EqmOptionsPopDefaults(PetscOptions *options);
 PETSC_INTERN PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns,
                                             EqmMatrixUse use, EqmLinear *linear);
+/* What -linear_solver says. Collective. */
+PETSC_INTERN PetscErrorCode EqmLinearWantedKind(EqmSolverKind *kind);
+/* A solver of no kind yet, for the functions that create one. Collective. */
+PETSC_INTERN PetscErrorCode EqmLinearBegin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use,
+                                           EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length);
 PETSC_INTERN PetscErrorCode EqmLinearDestroy(EqmLinear *linear);
 PETSC_INTERN PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context,
@@ -154,6 +162,11 @@ PETSC_INTERN PetscErrorCode EqmLinearSetExact(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearKeepCoarseSpaces(EqmLinear linear, PetscBool keep);
 PETSC_INTERN PetscBool EqmLinearHasCoarseSpaces(EqmLinear linear);
 PETSC_INTERN PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count, const PetscReal *fields);
+/* The map whose motions the unknowns are: `dim` coordinates per owned vertex, and `frame`, 2 dim: the directions of its
+   unknowns, orthonormal; NULL in the plane, where they follow from the place. For the factorisations to come; kinds
+   that need no image leave it alone. Collective. */
+PETSC_INTERN PetscErrorCode EqmLinearSetImage(EqmLinear linear, PetscInt dim, const PetscReal *x,
+                                              const PetscReal *frame);
 
 /* The kinds fill in the operations. */
 PETSC_INTERN PetscErrorCode EqmLinearSetUpCholmod(EqmLinear linear);

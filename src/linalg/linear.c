@@ -136,8 +136,7 @@ static PetscErrorCode Obey(EqmLinear linear, EqmOrdering ordering, EqmSolverKind
   PetscFunctionReturn(0);
 }
 
-/* A solver of no kind yet. */
-static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use, EqmLinear *linear)
+PetscErrorCode EqmLinearBegin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use, EqmLinear *linear)
 {
   PetscEnum precision = (PetscEnum)EQM_PRECISION_SINGLE;
   PetscFunctionBegin;
@@ -154,22 +153,33 @@ static PetscErrorCode Begin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrix
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmLinearWantedKind(EqmSolverKind *kind)
+{
+  PetscEnum wanted = (PetscEnum)EQM_SOLVER_AUTO;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetEnum(NULL, NULL, "-linear_solver", EqmSolverKinds, &wanted, NULL));
+  *kind = (EqmSolverKind)wanted;
+  PetscFunctionReturn(0);
+}
+
 /* A solver for matrices with the given unknowns (whose arrays must outlive it). Options: -linear_solver,
-   -linear_precision, -memory_limit. Errors: EQM_ERR_USAGE if the solver asked for does not fit. Collective. */
+   -linear_precision, -memory_limit; of kind hierarchy are only those that EqmLinearCreateOnLevels makes. Errors:
+   EQM_ERR_USAGE if the solver asked for does not fit. Collective. */
 PetscErrorCode EqmLinearCreate(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, EqmMatrixUse use,
                                EqmLinear *out)
 {
-  PetscEnum kind = (PetscEnum)EQM_SOLVER_AUTO;
+  EqmSolverKind kind;
   PetscReal limit;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetEnum(NULL, NULL, "-linear_solver", EqmSolverKinds, &kind, NULL));
+  PetscCall(EqmLinearWantedKind(&kind));
   PetscCall(EqmMemoryLimit(mesh->comm, &limit));
-  PetscCall(Begin(mesh, unknowns, use, out));
-  if ((EqmSolverKind)kind == EQM_SOLVER_AUTO)
+  PetscCall(EqmLinearBegin(mesh, unknowns, use, out));
+  if (kind == EQM_SOLVER_AUTO || kind == EQM_SOLVER_HIERARCHY)
     PetscCall(Choose(*out, ordering, limit));
   else
-    PetscCall(Obey(*out, ordering, (EqmSolverKind)kind, limit));
+    PetscCall(Obey(*out, ordering, kind, limit));
   PetscFunctionReturn(0);
 }
 
@@ -180,7 +190,7 @@ PetscErrorCode EqmLinearDescribe(EqmLinear linear, char *text, size_t length)
   char between[64] = "", shared[64] = "";
 
   PetscFunctionBegin;
-  if (linear->kind == EQM_SOLVER_MULTIGRID || linear->kind == EQM_SOLVER_PETSC) {
+  if (linear->kind >= EQM_SOLVER_MULTIGRID) {
     PetscCall(PetscSNPrintf(text, length, "%s (%" PetscInt_FMT " unknowns)", EqmSolverKinds[linear->kind],
                             linear->num_unknowns));
     PetscFunctionReturn(0);

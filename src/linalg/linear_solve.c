@@ -26,29 +26,45 @@ static PetscErrorCode ScaleDiagonal(Mat matrix, PetscReal factor)
   PetscFunctionReturn(0);
 }
 
+/* Assemble the cells' matrices, unless the kind does that itself. */
+static PetscErrorCode Assemble(EqmLinear linear)
+{
+  Mat matrix;
+
+  PetscFunctionBegin;
+  if (!linear->assembly) PetscFunctionReturn(0);
+  if (linear->padded_cell)
+    PetscCall(EqmAssemblyFill(linear->assembly, linear->padded_cell, linear));
+  else
+    PetscCall(EqmAssemblyFill(linear->assembly, linear->cell_matrix, linear->context));
+  PetscCall(EqmAssemblyGetMat(linear->assembly, &matrix));
+  if (linear->diagonal_factor != 1.) PetscCall(ScaleDiagonal(matrix, linear->diagonal_factor));
+  PetscFunctionReturn(0);
+}
+
 /* Assemble the cells' matrices, multiply the diagonal by `diagonal_factor` and factor. `success` is false on every rank
-   if the matrix is not numerically positive definite. Counts a factorisation. Collective. */
+   if the matrix is not numerically positive definite. Counts a factorisation, or a set-up of the hierarchy's levels.
+   Collective. */
 PetscErrorCode EqmLinearFactor(EqmLinear linear, EqmCellMatrix cell_matrix, void *context, PetscReal diagonal_factor,
                                PetscBool *success)
 {
   EqmWork *work;
-  Mat matrix;
 
   PetscFunctionBegin;
   linear->cell_matrix = cell_matrix;
   linear->context = context;
-  if (linear->padded_cell)
-    PetscCall(EqmAssemblyFill(linear->assembly, linear->padded_cell, linear));
-  else
-    PetscCall(EqmAssemblyFill(linear->assembly, cell_matrix, context));
-  PetscCall(EqmAssemblyGetMat(linear->assembly, &matrix));
-  if (diagonal_factor != 1.) PetscCall(ScaleDiagonal(matrix, diagonal_factor));
+  linear->diagonal_factor = diagonal_factor;
+  PetscCall(Assemble(linear));
   PetscCall(EqmEventBegin(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscCall(linear->factor(linear, success));
   PetscCall(EqmEventEnd(linear->mesh->ledger, EQM_EVENT_FACTOR));
   PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
-  work->factorizations++;
-  if (linear->use != EQM_MATRIX_SCALAR) work->coupled_factorizations++;
+  if (linear->kind == EQM_SOLVER_HIERARCHY) {
+    work->set_ups++;
+  } else {
+    work->factorizations++;
+    if (linear->use != EQM_MATRIX_SCALAR) work->coupled_factorizations++;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -135,6 +151,13 @@ PetscErrorCode EqmLinearSetFields(EqmLinear linear, PetscInt count, const PetscR
 {
   PetscFunctionBegin;
   if (linear->set_fields) PetscCall(linear->set_fields(linear, count, fields));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLinearSetImage(EqmLinear linear, PetscInt dim, const PetscReal *x, const PetscReal *frame)
+{
+  PetscFunctionBegin;
+  if (linear->set_image) PetscCall(linear->set_image(linear, dim, x, frame));
   PetscFunctionReturn(0);
 }
 

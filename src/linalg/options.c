@@ -1,8 +1,8 @@
 /* The options of linear solvers: which there are, and which of them a run inside another one takes over. */
 #include "linalg/linalg.h"
 
-const char *const EqmSolverKinds[] = {"auto",      "cholmod", "multifrontal",  "substructure", "mumps",
-                                      "multigrid", "petsc",   "EqmSolverKind", "EQM_SOLVER_",  NULL};
+const char *const EqmSolverKinds[] = {"auto",  "cholmod",   "multifrontal",  "substructure", "mumps", "multigrid",
+                                      "petsc", "hierarchy", "EqmSolverKind", "EQM_SOLVER_",  NULL};
 const char *const EqmPrecisions[] = {"single", "double", "EqmPrecision", "EQM_PRECISION_", NULL};
 
 /* Smaller ones are done sooner on one rank. */
@@ -28,7 +28,8 @@ PetscErrorCode EqmLinearHelpOptions(PetscOptionItems *PetscOptionsObject)
   PetscFunctionBegin;
   PetscCall(PetscOptionsEnum("-linear_solver",
                              "what solves with matrices; multifrontal and cholmod are for one rank, substructure and "
-                             "mumps for several; petsc: by -linear_ksp_type, -linear_pc_type, ...",
+                             "mumps for several; hierarchy: of lm's matrices on surfaces, by multigrid on coarser "
+                             "meshes; petsc: by -linear_ksp_type, -linear_pc_type, ...",
                              "EqmLinearCreate", EqmSolverKinds, kind, &kind, NULL));
   PetscCall(PetscOptionsInt("-linear_shared_front",
                             "dense fronts of more unknowns are shared between ranks, with substructure and ScaLAPACK",

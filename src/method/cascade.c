@@ -11,7 +11,7 @@ static const PetscReal first_epsilon = .01, last_epsilon = 1e-3, least_gain = .0
 enum { SWEEPS = 2 };
 
 typedef struct {
-  EqmLevels levels;
+  EqmLevels *levels; /* the problem's */
   EqmCascadeOptions options;
   PetscReal epsilon; /* falls to `last_epsilon` where it gains little; then to zero: the end */
 } Cascade;
@@ -31,7 +31,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(EqmCascadeOptionsDefault(&cascade->options));
   cascade->epsilon = first_epsilon;
   cascade->options.sweeps = SWEEPS;
-  PetscCall(EqmLevelsCreate(method->problem, &cascade->levels));
+  PetscCall(EqmProblemGetLevels(method->problem, &cascade->levels));
   iterate->objective = iterate->totals.energy;
   iterate->gradient_norm = -1.;
   PetscFunctionReturn(0);
@@ -41,7 +41,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 static PetscErrorCode Relax(Cascade *cascade, EqmProblem problem, EqmIterate iterate, PetscBool *better,
                             PetscBool *gained)
 {
-  EqmLevels *const levels = &cascade->levels;
+  EqmLevels *const levels = cascade->levels;
   EqmCascadeResult result;
   EqmPlace trial;
   PetscInt64 folds;
@@ -89,13 +89,6 @@ static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Reset(EqmMethod method)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmLevelsDestroy(&((Cascade *)method->data)->levels));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode EqmMethodCreateCascade(EqmMethod method)
 {
   Cascade *cascade;
@@ -104,6 +97,6 @@ PetscErrorCode EqmMethodCreateCascade(EqmMethod method)
   PetscCall(PetscNew(&cascade));
   method->data = cascade;
   method->purpose = "relaxation on a hierarchy of coarser meshes: a smooth map, areas good to a percent or two, soon";
-  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State, .reset = Reset};
+  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State};
   PetscFunctionReturn(0);
 }

@@ -17,17 +17,15 @@ enum { MOST_DAMPINGS = 8, MEMORY = 10 };
 /* Weighted by the residual, the metric vanishes with it; with less damping than this its near-null directions would
    carry rounding errors only. */
 static const PetscReal least_damping = 1e-2;
-/* Of steps by iteration: in the energy norm, which is the model's. Smaller ones gain nothing. */
-static const PetscReal inexact = 1e-2;
 
-/* Damping follows the length of the step that the search settled on; on the sphere in larger strides. Factors by trial.
- */
+/* Damping follows the length of the step that the search settled on; on the sphere and by cycles in larger strides.
+   Factors by trial. */
 static void AdaptDamping(EqmLm *lm, PetscReal t)
 {
   const PetscBool sphere = (PetscBool)(lm->upright != NULL);
 
   if (t >= .99)
-    lm->mu *= sphere ? .3 : .5;
+    lm->mu *= lm->by_cycles ? .2 : sphere ? .3 : .5;
   else if (t > .3)
     lm->mu *= sphere ? 2. : 1.;
   else if (t >= .13)
@@ -35,6 +33,7 @@ static void AdaptDamping(EqmLm *lm, PetscReal t)
   else
     lm->mu *= 31.6;
   lm->mu = PetscMax(lm->mu, least_damping);
+  if (t < .99) lm->image_uses = 0; /* the map is not where the model said: coarse motions anew */
 }
 
 /* The weight of the upright term. */
@@ -70,12 +69,39 @@ static PetscBool IsRounding(const EqmLm *lm, PetscReal predicted, PetscReal leve
   return (PetscBool)(predicted <= level * lm->now.objective);
 }
 
+/* Steps with ever more damping until one decreases the objective; `t`: its length, 0: none does. */
+static PetscErrorCode TryDampings(EqmMethod method, PetscReal *t, PetscBool *at_rest, PetscBool *converged)
+{
+  EqmLm *const lm = method->data;
+
+  PetscFunctionBegin;
+  *t = 0.;
+  *converged = PETSC_FALSE;
+  for (PetscInt damping = 0; damping < MOST_DAMPINGS && *t == 0.; damping++) {
+    PetscBool success;
+    PetscReal ratio, predicted;
+    PetscCall(EqmLmFactor(method, &success));
+    if (success) PetscCall(EqmLmSolveForStep(method, &success));
+    if (success) PetscCall(EqmLmSolveForCurve(method, &ratio, &success));
+    if (success) {
+      PetscCall(EqmLmPredictedDecrease(method, &predicted));
+      *converged = IsRounding(lm, predicted, 1e-12);
+      if (*converged) PetscFunctionReturn(0);
+      *at_rest = (PetscBool)(*at_rest || IsRounding(lm, predicted, 1e-8));
+      PetscCall(EqmLmSearch(method, ratio, predicted, t));
+    }
+    if (*t == 0.) lm->mu = PetscMax(10. * lm->mu, 1e-16);
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
   EqmLm *const lm = method->data;
-  const PetscReal old_squares = lm->now.squares;
+  const PetscReal old_squares = lm->now.squares, old_mu = lm->mu;
   PetscBool at_rest = PETSC_FALSE; /* close to a minimum: should no step decrease the objective, this is one */
-  PetscReal t = 0.;
+  PetscBool converged;
+  PetscReal t;
 
   PetscFunctionBegin;
   if (!lm->residual->without_mean) { /* the level follows the total area from one iteration to the next */
@@ -83,24 +109,13 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
     PetscCall(EqmLmEvaluate(method, &lm->now));
   }
   PetscCall(EqmLmLinearise(method, iterate));
-  for (PetscInt damping = 0; damping < MOST_DAMPINGS && t == 0.; damping++) {
-    PetscBool success;
-    PetscReal ratio, predicted;
-    PetscCall(EqmLmFactor(method, &success));
-    if (success) PetscCall(EqmLmSolveForStep(method, &success));
-    if (success) {
-      PetscCall(EqmLmSolveForCurve(method, &ratio));
-      PetscCall(EqmLmPredictedDecrease(method, &predicted));
-      if (IsRounding(lm, predicted, 1e-12)) {
-        *outcome = EQM_STEP_CONVERGED;
-        PetscFunctionReturn(0);
-      }
-      at_rest = (PetscBool)(at_rest || IsRounding(lm, predicted, 1e-8));
-      PetscCall(EqmLmSearch(method, ratio, predicted, &t));
-    }
-    if (t == 0.) lm->mu = PetscMax(10. * lm->mu, 1e-16);
+  PetscCall(TryDampings(method, &t, &at_rest, &converged));
+  if (t == 0. && !converged && !at_rest && lm->by_cycles) {
+    PetscCall(EqmLmFallBack(method));
+    lm->mu = old_mu;
+    PetscCall(TryDampings(method, &t, &at_rest, &converged));
   }
-  *outcome = at_rest ? EQM_STEP_CONVERGED : EQM_STEP_STALLED;
+  *outcome = converged || at_rest ? EQM_STEP_CONVERGED : EQM_STEP_STALLED;
   if (t == 0.) PetscFunctionReturn(0);
   AdaptDamping(lm, t);
   EqmLmSwap(&lm->now, &lm->best);
@@ -177,22 +192,15 @@ static PetscErrorCode TakeStart(EqmMethod method, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
-/* Quasi-Newton steps towards one of the many maps with equal areas make up for a factor in single precision. Where the
-   map is unique, as beside the angle energy, or where there are none of these steps, digits of the factor are digits of
-   the map. */
-static EqmMatrixUse FactorUse(const EqmLm *lm)
-{
-  return lm->most_inner > 0 && lm->residual->without_mean ? EQM_MATRIX_STEP : EQM_MATRIX_COUPLED;
-}
-
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
   EqmLm *const lm = method->data;
   const EqmProblem problem = method->problem;
 
   PetscFunctionBegin;
-  lm->mu = 1.;
   lm->term_scale = 1. / problem->domain->target_measure;
+  PetscCall(EqmLmChooseSolver(method));
+  lm->mu = lm->by_cycles ? .1 : 1.;
   PetscCall(EqmLmChooseResidual(method));
   lm->level = lm->residual->without_mean ? 0. : PetscLogReal(iterate->totals.total);
   SetKappa(lm, 0.);
@@ -201,8 +209,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
     PetscCall(EqmProblemAddTerm(problem, lm->upright));
     SetKappa(lm, 1.);
   }
-  PetscCall(EqmProblemCreateLinear(problem, FactorUse(lm), &lm->linear));
-  PetscCall(EqmLinearSetInexact(lm->linear, inexact));
+  PetscCall(EqmLmCreateLinear(method));
   PetscCall(MakeRoom(method));
   PetscCall(VecSet(lm->mean, 0.)); /* where the residual has no mean it stays so */
   PetscCall(TakeStart(method, iterate));
@@ -217,6 +224,7 @@ static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state
   PetscFunctionBegin;
   PetscCall(EqmStateReal(state, "damping", &lm->mu));
   PetscCall(EqmStateReal(state, "barrier_weight", &lm->kappa));
+  PetscCall(EqmLmLinearState(method, state));
   if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
   SetKappa(lm, lm->kappa);
   PetscCall(EqmLmAddTerms(method, &lm->now));
@@ -228,7 +236,7 @@ static PetscErrorCode Reset(EqmMethod method)
   EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmLinearDestroy(&lm->linear));
+  PetscCall(EqmLmDestroyLinear(method));
   if (lm->upright) {
     PetscCall(EqmProblemRemoveTerm(method->problem, lm->upright));
     PetscCall(lm->upright->destroy(lm->upright));

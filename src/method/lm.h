@@ -19,6 +19,10 @@ typedef struct {
   const EqmResidual *wanted; /* the user's; NULL: what suits the terms */
   const EqmResidual *residual;
   EqmLinear linear;
+  PetscBool by_cycles;     /* on a hierarchy of meshes; else by a factor */
+  PetscBool cycles_failed; /* and a factor is what there is since */
+  PetscInt image_uses;     /* matrices so far whose coarse motions are interpolated in the map `image_of` */
+  EqmPlace image_of;       /* empty before the first */
   PetscReal mu;
   PetscReal term_scale; /* 1/T: of the problem's terms beside sum w rho^2, which is about E/T */
   EqmTerm upright;      /* sphere: the method's own term, of weight kappa T; else NULL */
@@ -45,9 +49,20 @@ PETSC_INTERN PetscErrorCode EqmLmGradientNorm(EqmMethod method, PetscReal *norm)
 PETSC_INTERN PetscErrorCode EqmLmLinearise(EqmMethod method, EqmIterate iterate);
 PETSC_INTERN PetscErrorCode EqmLmFactor(EqmMethod method, PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmLmSolveForStep(EqmMethod method, PetscBool *success);
-PETSC_INTERN PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio);
+PETSC_INTERN PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio, PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmLmPredictedDecrease(EqmMethod method, PetscReal *decrease);
 PETSC_INTERN PetscErrorCode EqmLmApplyInverse(void *method, Vec q);
+/* lm_linear.c */
+/* Cycles or a factor, as -linear_solver says, and then, once there is a residual, the linear solver. Errors:
+   EQM_ERR_USAGE (a hierarchy that there cannot be). Collective. */
+PETSC_INTERN PetscErrorCode EqmLmChooseSolver(EqmMethod method);
+PETSC_INTERN PetscErrorCode EqmLmCreateLinear(EqmMethod method);
+PETSC_INTERN PetscErrorCode EqmLmDestroyLinear(EqmMethod method);
+/* Tell it what it wants to know about the map before it gets the map's matrix. Collective. */
+PETSC_INTERN PetscErrorCode EqmLmPrepareLinear(EqmMethod method);
+/* A factor in place of cycles that lead nowhere. Collective. */
+PETSC_INTERN PetscErrorCode EqmLmFallBack(EqmMethod method);
+PETSC_INTERN PetscErrorCode EqmLmLinearState(EqmMethod method, EqmState state);
 /* lm_fields.c */
 PETSC_INTERN PetscErrorCode EqmLmSetFields(EqmMethod method);
 /* lm_search.c */

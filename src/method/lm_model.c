@@ -149,20 +149,24 @@ static PetscErrorCode DifferentiateAlongStep(EqmMethod method)
 }
 
 /* Geodesic acceleration: d2 = -1/2 H^-1 J^T W rho'' along the geodesic of velocity d; `ratio` = |d2| / |d| as
-   displacements. Leaves the step's velocity in lm->velocity. Collective. */
-PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio)
+   displacements. Leaves the step's velocity in lm->velocity. `success` as of EqmLmSolveForStep. Collective. */
+PetscErrorCode EqmLmSolveForCurve(EqmMethod method, PetscReal *ratio, PetscBool *success)
 {
   EqmLm *const lm = method->data;
   const EqmProblem problem = method->problem;
   const PetscInt n = problem->domain->dim * problem->mesh->num_owned;
   PetscReal norm[2];
+  PetscScalar *array;
 
   PetscFunctionBegin;
   PetscCall(DifferentiateAlongStep(method));
   PetscCall(PullBack(method, lm->rho_second, lm->curve));
   PetscCall(EqmTermsAddCurve(problem, &lm->now.place, lm->now.image, lm->velocity, lm->acceleration, lm->term_scale,
                              lm->curve));
-  PetscCall(EqmLmApplyInverse(method, lm->curve));
+  PetscCall(VecGetArray(lm->curve, &array));
+  PetscCall(EqmLinearTrySolve(lm->linear, 1, array, array, success));
+  PetscCall(VecRestoreArray(lm->curve, &array));
+  PetscCall(AddMeanTerm(lm, lm->curve));
   PetscCall(VecScale(lm->curve, -.5));
   PetscCall(EqmDomainExpand(problem->domain, &lm->now.place, lm->curve, lm->acceleration));
   PetscCall(Norms(problem->mesh, n, lm->velocity, lm->acceleration, norm));
@@ -264,7 +268,7 @@ PetscErrorCode EqmLmFactor(EqmMethod method, PetscBool *success)
   EqmLm *const lm = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmLmSetFields(method));
+  PetscCall(EqmLmPrepareLinear(method));
   PetscCall(EqmLinearFactor(lm->linear, CellMatrix, method, diagonal_factor, success));
   PetscFunctionReturn(0);
 }

@@ -88,7 +88,7 @@ static PetscBool IsUsedUp(PetscInt steps, const PetscReal *objective, PetscReal 
 PetscErrorCode EqmLmInnerSteps(EqmMethod method, EqmIterate iterate)
 {
   EqmLm *const lm = method->data;
-  const PetscInt most = lm->most_inner;
+  const PetscInt most = lm->by_cycles ? 0 : lm->most_inner;
   PetscReal *objective, t = .25, slope;
 
   PetscFunctionBegin;

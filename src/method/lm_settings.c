@@ -14,7 +14,8 @@ PetscErrorCode EqmLmSetFromOptions(EqmMethod method, PetscOptionItems *PetscOpti
                                    "EqmSolverSetFromOptions", lm->most_inner, &lm->most_inner, NULL, 0));
   PetscCall(PetscOptionsString("-lm_residual",
                                "lm: what is squared of each ratio r: log (of r, less its mean), mixed (r - 1 where r > "
-                               "1, else log r), ratio (r - 1), or auto: mixed beside the angle energy, else log",
+                               "1, else log r), ratio (r - 1), or auto: mixed beside the angle energy and with "
+                               "-linear_solver hierarchy, else log",
                                "EqmSolverSetFromOptions", "auto", name, sizeof(name), &given));
   if (!given) PetscFunctionReturn(0);
   PetscCall(PetscStrcmp(name, "auto", &is_auto));
@@ -54,6 +55,6 @@ PetscErrorCode EqmLmChooseResidual(EqmMethod method)
   PetscFunctionBegin;
   for (EqmTerm term = method->problem->terms; term && !has_angle; term = term->next)
     PetscCall(PetscStrcmp(term->name, "angle", &has_angle));
-  lm->residual = lm->wanted ? lm->wanted : has_angle ? &EqmResidualMixed : &EqmResidualLog;
+  lm->residual = lm->wanted ? lm->wanted : has_angle || lm->by_cycles ? &EqmResidualMixed : &EqmResidualLog;
   PetscFunctionReturn(0);
 }

@@ -2,8 +2,6 @@
 #include "problem/problem.h"
 #include "domain/domain_private.h"
 
-/* A solver with the domain's degrees of freedom as unknowns. The scalar solver of the start, a quarter of the memory
-   and no longer needed, is destroyed. Collective. */
 PetscErrorCode EqmProblemCreateLinear(EqmProblem problem, EqmMatrixUse use, EqmLinear *linear)
 {
   const EqmUnknowns unknowns = EqmDomainUnknowns(problem->domain);
@@ -11,6 +9,7 @@ PetscErrorCode EqmProblemCreateLinear(EqmProblem problem, EqmMatrixUse use, EqmL
   PetscFunctionBegin;
   PetscCall(EqmLinearDestroy(&problem->scalar));
   PetscCall(PetscFree(problem->scalar_count));
+  PetscCall(EqmProblemDropLevels(problem));
   PetscCall(EqmLinearCreate(problem->mesh, problem->ordering, &unknowns, use, linear));
   PetscCall(EqmLinearDescribe(*linear, problem->linear_solver, sizeof(problem->linear_solver)));
   PetscFunctionReturn(0);
@@ -41,5 +40,26 @@ PetscErrorCode EqmProblemSetFields(EqmProblem problem, const EqmPlace *place, Eq
   PetscCall(EqmLinearSetFields(linear, count, fields));
   PetscCall(VecDestroy(&dofs));
   PetscCall(PetscFree2(fields, velocity));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmProblemSetImage(EqmProblem problem, const EqmPlace *place, EqmLinear linear)
+{
+  const PetscInt dim = problem->domain->dim, num_owned = problem->mesh->num_owned;
+  PetscReal *frames = NULL;
+
+  PetscFunctionBegin;
+  if (!linear->set_image) PetscFunctionReturn(0);
+  if (dim == 3) {
+    PetscCall(PetscMalloc1(6 * num_owned, &frames));
+#pragma omp parallel for schedule(static)
+    for (PetscInt v = 0; v < num_owned; v++) {
+      PetscReal frame[9];
+      EqmDomainFrame(problem->domain, place, v, frame);
+      for (PetscInt k = 0; k < 6; k++) frames[6 * v + k] = frame[k];
+    }
+  }
+  PetscCall(EqmLinearSetImage(linear, dim, place->x, frames));
+  PetscCall(PetscFree(frames));
   PetscFunctionReturn(0);
 }

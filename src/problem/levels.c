@@ -1,4 +1,5 @@
 #include "problem/levels.h"
+#include "linalg/onlevels.h"
 #include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
 
@@ -14,7 +15,15 @@ const char *EqmLevelsObstacle(EqmProblem problem)
   return NULL;
 }
 
-PetscErrorCode EqmLevelsCreate(EqmProblem problem, EqmLevels *levels)
+const char *EqmLevelsObstacleToLinear(EqmProblem problem)
+{
+  if (problem->mesh->cell_size != 3) return "is for surfaces";
+  if (problem->mesh->size > 1 && problem->mesh->num_vertices > most_gathered)
+    return "works on one rank: not from several for more than a million vertices";
+  return EqmLevelsObstacle(problem);
+}
+
+static PetscErrorCode Create(EqmProblem problem, EqmLevels *levels)
 {
   const EqmDomain domain = problem->domain;
   const EqmMesh mesh = problem->mesh;
@@ -36,11 +45,40 @@ PetscErrorCode EqmLevelsCreate(EqmProblem problem, EqmLevels *levels)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmLevelsDestroy(EqmLevels *levels)
+PetscErrorCode EqmProblemGetLevels(EqmProblem problem, EqmLevels **levels)
 {
   PetscFunctionBegin;
+  if (!problem->levels) {
+    PetscCall(PetscNew(&problem->levels));
+    PetscCall(Create(problem, problem->levels));
+  }
+  *levels = problem->levels;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmProblemDropLevels(EqmProblem problem)
+{
+  EqmLevels *const levels = problem->levels;
+
+  PetscFunctionBegin;
+  if (!levels) PetscFunctionReturn(0);
   PetscCall(EqmHierarchyDestroy(&levels->hierarchy));
   PetscCall(EqmSharedDestroy(&levels->shared));
+  PetscCall(PetscFree(problem->levels));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmProblemCreateLinearOnLevels(EqmProblem problem, EqmLinear *linear)
+{
+  const EqmUnknowns unknowns = EqmDomainUnknowns(problem->domain);
+  EqmLevels *levels;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLinearDestroy(&problem->scalar));
+  PetscCall(PetscFree(problem->scalar_count));
+  PetscCall(EqmProblemGetLevels(problem, &levels));
+  PetscCall(EqmLinearCreateOnLevels(problem->mesh, &unknowns, levels->hierarchy, levels->target, linear));
+  PetscCall(EqmLinearDescribe(*linear, problem->linear_solver, sizeof(problem->linear_solver)));
   PetscFunctionReturn(0);
 }
 

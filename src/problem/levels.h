@@ -7,7 +7,7 @@
 
 /* On one rank, and from several for what one can hold, the hierarchy is on the first; else all ranks share its finest
    levels. */
-typedef struct {
+typedef struct EqmLevels {
   EqmProblem problem;
   EqmCascadeTarget target;
   EqmHierarchy hierarchy; /* or NULL */
@@ -16,9 +16,12 @@ typedef struct {
 
 /* Why there can be none for this problem, as the end of a sentence about "it"; NULL: there can. Not collective. */
 PETSC_INTERN const char *EqmLevelsObstacle(EqmProblem problem);
-/* Corners of the square stay on all levels. Collective. */
-PETSC_INTERN PetscErrorCode EqmLevelsCreate(EqmProblem problem, EqmLevels *levels);
-PETSC_INTERN PetscErrorCode EqmLevelsDestroy(EqmLevels *levels);
+/* The same for a linear solver on them. */
+PETSC_INTERN const char *EqmLevelsObstacleToLinear(EqmProblem problem);
+/* The problem's levels, made at the first need; corners of the square stay on all of them. Collective. */
+PETSC_INTERN PetscErrorCode EqmProblemGetLevels(EqmProblem problem, EqmLevels **levels);
+/* A solver of kind hierarchy on the problem's levels for the domain's degrees of freedom. Collective. */
+PETSC_INTERN PetscErrorCode EqmProblemCreateLinearOnLevels(EqmProblem problem, EqmLinear *linear);
 /* EqmCascade on them: boundary vertices of the place, which is set, ghosts included, are set on entry; frames are not
    chosen anew. Collective. */
 PETSC_INTERN PetscErrorCode EqmLevelsCascade(EqmLevels *levels, const EqmCascadeOptions *options, EqmPlace *place,

@@ -25,6 +25,7 @@ PetscErrorCode EqmProblemDestroy(EqmProblem *problem)
   PetscFunctionBegin;
   if (!p) PetscFunctionReturn(0);
   PetscCall(EqmLinearDestroy(&p->scalar));
+  PetscCall(EqmProblemDropLevels(p));
   PetscCall(EqmOrderingDestroy(&p->ordering));
   PetscCall(PetscFree(p->scalar_count));
   PetscCall(PetscFree(p->angle_weights));

@@ -50,7 +50,8 @@ struct _p_EqmProblem {
   EqmLandmarks landmarks;
   struct _p_EqmTerm *terms; /* added to the objective (term.h); NULL: none */
 
-  EqmLinear scalar; /* one unknown per vertex: Laplacians of all kinds; NULL before the first use */
+  struct EqmLevels *levels; /* coarser meshes (levels.h); NULL before the first use */
+  EqmLinear scalar;         /* one unknown per vertex: Laplacians of all kinds; NULL before the first use */
   unsigned char *scalar_count;
   PetscBool holds_fixed_metric; /* `scalar` has the factor of the objective's fixed metric */
   PetscReal *angle_weights,
@@ -99,14 +100,19 @@ static inline EqmUnknowns EqmDomainUnknowns(EqmDomain domain)
                        .start = domain->dof_start,
                        .count = domain->dof_count};
 }
-/* A linear solver with the domain's degrees of freedom as unknowns. The scalar one, a quarter of the memory and of no
-   more use, is destroyed. Collective. */
+/* Destroy the problem's levels, if there are any; they are made again at the next need (levels.c). Collective. */
+PETSC_INTERN PetscErrorCode EqmProblemDropLevels(EqmProblem problem);
+/* A linear solver with the domain's degrees of freedom as unknowns. The scalar one and the levels, which take memory
+   and are of no more use, are destroyed. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemCreateLinear(EqmProblem problem, EqmMatrixUse use, EqmLinear *linear);
 /* Give `linear`, if it has a use for them, fields that the matrix hardly sees: `field` gives the velocity of the field
    of number `which` at the place x of a vertex, in space. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemSetFields(EqmProblem problem, const EqmPlace *place, EqmLinear linear,
                                                 PetscInt count,
                                                 void (*field)(PetscInt which, const PetscReal *x, PetscReal *velocity));
+
+/* Give `linear`, if it has a use for it, the map whose motions the unknowns are. Collective. */
+PETSC_INTERN PetscErrorCode EqmProblemSetImage(EqmProblem problem, const EqmPlace *place, EqmLinear linear);
 
 /* ---- scalar Laplacians on groups of vertices (laplace.c) */
 enum { EQM_GROUP_FIXED = -1 };

@@ -173,6 +173,8 @@ PetscErrorCode EqmCheckpointVisitMethod(EqmState state, EqmSolver solver)
   PetscCall(EqmStateInt64(state, "factorizations", &work->factorizations));
   PetscCall(EqmStateInt64(state, "coupled_factorizations", &work->coupled_factorizations));
   PetscCall(EqmStateInt64(state, "solves", &work->solves));
+  PetscCall(EqmStateInt64(state, "cg_iterations", &work->cg_iterations));
+  PetscCall(EqmStateInt64(state, "set_ups", &work->set_ups));
   PetscFunctionReturn(0);
 }
 

@@ -101,6 +101,7 @@ static PetscErrorCode CountWork(EqmLedger from, EqmLedger to)
   all->coupled_factorizations += part->coupled_factorizations;
   all->solves += part->solves;
   all->cg_iterations += part->cg_iterations;
+  all->set_ups += part->set_ups;
   PetscFunctionReturn(0);
 }
 

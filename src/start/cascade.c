@@ -7,14 +7,13 @@
 static PetscErrorCode Cascade(EqmProblem problem, EqmIterate iterate, EqmCascadeResult *result)
 {
   EqmCascadeOptions options;
-  EqmLevels levels;
+  EqmLevels *levels;
 
   PetscFunctionBegin;
   PetscCall(EqmDomainPlaceBoundary(problem->domain, &iterate->place));
   PetscCall(EqmCascadeOptionsDefault(&options));
-  PetscCall(EqmLevelsCreate(problem, &levels));
-  PetscCall(EqmLevelsCascade(&levels, &options, &iterate->place, result));
-  PetscCall(EqmLevelsDestroy(&levels));
+  PetscCall(EqmProblemGetLevels(problem, &levels));
+  PetscCall(EqmLevelsCascade(levels, &options, &iterate->place, result));
   PetscFunctionReturn(0);
 }
 

@@ -218,6 +218,7 @@ static void AddCost(cJSON *root, EqmMap map)
   AddCount(group, "coupled_factorizations", map->cost.work.coupled_factorizations);
   AddCount(group, "solves", map->cost.work.solves);
   AddCount(group, "cg_iterations", map->cost.work.cg_iterations);
+  AddCount(group, "set_ups", map->cost.work.set_ups);
   group = cJSON_AddObjectToObject(root, "seconds");
   AddNumber(group, "total", map->cost.total_seconds);
   for (int k = 0; k < EQM_NUM_PHASES; k++) AddNumber(group, phases[k].key, map->cost.phase_seconds[phases[k].phase]);

@@ -1,0 +1,25 @@
+/* Multigrid on the levels of a hierarchy: Galerkin products, one sweep before and its transpose after, so that a cycle
+   is a symmetric operator; conjugate gradients by PETSc. */
+#ifndef EQM_CYCLE_H
+#define EQM_CYCLE_H
+
+#include "hierarchy/levelsystem.h"
+#include "hierarchy/sweeps.h"
+
+typedef struct _p_EqmCycle *EqmCycle;
+/* Patterns of all levels. `prolongation`: from each coarser level to the next finer one, the finest first; they and
+   `finest` must outlive the cycle. Not collective. */
+PETSC_INTERN PetscErrorCode EqmCycleCreate(const EqmBlockMatrix *finest, PetscInt num_prolongations,
+                                           const EqmProlongation *prolongation, EqmCycle *cycle);
+/* Matrices of all levels from the present entries of the finest one, whose diagonal is complete, and the coarsest one's
+   factor. `success` is false where one is not positive definite; the cycle must then be filled again before it solves.
+   Not collective. */
+PETSC_INTERN PetscErrorCode EqmCycleFill(EqmCycle cycle, PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmCycleDestroy(EqmCycle *cycle);
+/* Conjugate gradients with one cycle as preconditioner, until the error is down to `tolerance` of what it was (energy
+   norm), or for so many iterations that more would not pay: the solution is then as good as they made it. `success` is
+   false where the matrix turns out not to be definite. Not collective. */
+PETSC_INTERN PetscErrorCode EqmCycleSolve(EqmCycle cycle, PetscReal *b, PetscReal *x, PetscReal tolerance,
+                                          PetscInt *iterations, PetscBool *success);
+
+#endif

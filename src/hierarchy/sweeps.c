@@ -1,0 +1,137 @@
+#include "hierarchy/sweeps.h"
+
+/* Fewer rows are not worth the threads; a piece has so many. */
+enum { LEAST_ROWS = 4096, ROWS_OF_PIECE = 8192 };
+
+/* Which part of row i column j belongs to: 0, 1 or 2; the diagonal to none. */
+static inline int PartOf(PetscInt i, PetscInt j)
+{
+  if (i == j) return -1;
+  if (i / ROWS_OF_PIECE != j / ROWS_OF_PIECE) return 2;
+  return j > i;
+}
+
+PetscErrorCode EqmSweepsCreate(const EqmBlockMatrix *a, EqmSweeps *s)
+{
+  const PetscInt n = a->num_rows;
+
+  PetscFunctionBegin;
+  *s = (EqmSweeps){.num_rows = n};
+  PetscCall(PetscMalloc1(3 * n + 1, &s->part));
+  PetscCall(PetscMalloc1(a->start[n] - n, &s->column));
+  PetscCall(PetscMalloc1(a->start[n] - n, &s->place));
+  PetscCall(PetscMalloc1(a->start[n] - n, &s->entry));
+  PetscCall(PetscMalloc1(n, &s->diagonal));
+  PetscCall(PetscMalloc1(n, &s->inverse));
+  s->part[0] = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscInt at = s->part[3 * i];
+    for (int part = 0; part < 3; part++) {
+      for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++) {
+        if (PartOf(i, a->column[q]) != part) continue;
+        s->column[at] = a->column[q];
+        s->place[at++] = q;
+      }
+      s->part[3 * i + part + 1] = at;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSweepsDestroy(EqmSweeps *s)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(s->part));
+  PetscCall(PetscFree(s->column));
+  PetscCall(PetscFree(s->place));
+  PetscCall(PetscFree(s->entry));
+  PetscCall(PetscFree(s->diagonal));
+  PetscCall(PetscFree(s->inverse));
+  PetscFunctionReturn(0);
+}
+
+void EqmSweepsFill(EqmSweeps *s, const EqmBlockMatrix *a)
+{
+#pragma omp parallel for schedule(static) if (s->num_rows > LEAST_ROWS)
+  for (PetscInt i = 0; i < s->num_rows; i++) {
+    const EqmBlock *const diagonal = &a->entry[a->diagonal[i]];
+    EqmBlock d = *diagonal;
+    PetscReal beyond = 0., det;
+    for (PetscInt q = s->part[3 * i]; q < s->part[3 * i + 3]; q++) {
+      const PetscReal *const e = a->entry[s->place[q]].e;
+      for (PetscInt k = 0; k < 4; k++) s->entry[q].e[k] = (float)e[k];
+      if (q >= s->part[3 * i + 2]) beyond += .5 * PetscSqrtReal(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
+    }
+    for (PetscInt k = 0; k < 4; k++) s->diagonal[i].e[k] = (float)d.e[k];
+    d.e[0] += beyond;
+    d.e[3] += beyond;
+    det = d.e[0] * d.e[3] - d.e[1] * d.e[2];
+    s->inverse[i] = (EqmBlock){{d.e[3] / det, -d.e[1] / det, -d.e[2] / det, d.e[0] / det}};
+  }
+}
+
+/* sum -= the entries from `begin` to `end` times x. */
+static inline void Subtract(const EqmSweeps *s, PetscInt begin, PetscInt end, const PetscReal *x, PetscReal sum[2])
+{
+  for (PetscInt q = begin; q < end; q++) {
+    const float *const e = s->entry[q].e;
+    const PetscReal *const y = x + 2 * s->column[q];
+    sum[0] -= (PetscReal)e[0] * y[0] + (PetscReal)e[1] * y[1];
+    sum[1] -= (PetscReal)e[2] * y[0] + (PetscReal)e[3] * y[1];
+  }
+}
+
+/* Solve with the enlarged diagonal block. */
+static inline void SolveRow(const EqmSweeps *s, PetscInt i, const PetscReal right[2], PetscReal x[2])
+{
+  const PetscReal *const e = s->inverse[i].e;
+
+  x[0] = e[0] * right[0] + e[1] * right[1];
+  x[1] = e[2] * right[0] + e[3] * right[1];
+}
+
+void EqmSweepForward(const EqmSweeps *s, const PetscReal *b, PetscReal *x, PetscReal *r)
+{
+  const PetscInt n = s->num_rows;
+
+#pragma omp parallel for schedule(dynamic) if (n > LEAST_ROWS)
+  for (PetscInt begin = 0; begin < n; begin += ROWS_OF_PIECE) {
+    for (PetscInt i = begin; i < PetscMin(begin + ROWS_OF_PIECE, n); i++) {
+      PetscReal right[2] = {b[2 * i], b[2 * i + 1]};
+      Subtract(s, s->part[3 * i], s->part[3 * i + 1], x, right);
+      SolveRow(s, i, right, x + 2 * i);
+      r[2 * i] = right[0];
+      r[2 * i + 1] = right[1];
+    }
+  }
+#pragma omp parallel for schedule(static) if (n > LEAST_ROWS)
+  for (PetscInt i = 0; i < n; i++) { /* r has what the sweep left for the diagonal and what comes behind it */
+    const float *const d = s->diagonal[i].e;
+    r[2 * i] -= (PetscReal)d[0] * x[2 * i] + (PetscReal)d[1] * x[2 * i + 1];
+    r[2 * i + 1] -= (PetscReal)d[2] * x[2 * i] + (PetscReal)d[3] * x[2 * i + 1];
+    Subtract(s, s->part[3 * i + 1], s->part[3 * i + 3], x, r + 2 * i);
+  }
+}
+
+void EqmSweepBackward(const EqmSweeps *s, const PetscReal *b, PetscReal *x, PetscReal *r)
+{
+  const PetscInt n = s->num_rows;
+
+#pragma omp parallel for schedule(static) if (n > LEAST_ROWS)
+  for (PetscInt i = 0; i < n; i++) {
+    const float *const d = s->diagonal[i].e;
+    r[2 * i] = b[2 * i] - ((PetscReal)d[0] * x[2 * i] + (PetscReal)d[1] * x[2 * i + 1]);
+    r[2 * i + 1] = b[2 * i + 1] - ((PetscReal)d[2] * x[2 * i] + (PetscReal)d[3] * x[2 * i + 1]);
+    Subtract(s, s->part[3 * i], s->part[3 * i + 3], x, r + 2 * i);
+  }
+#pragma omp parallel for schedule(dynamic) if (n > LEAST_ROWS)
+  for (PetscInt begin = 0; begin < n; begin += ROWS_OF_PIECE) {
+    for (PetscInt i = PetscMin(begin + ROWS_OF_PIECE, n) - 1; i >= begin; i--) {
+      PetscReal right[2] = {r[2 * i], r[2 * i + 1]};
+      Subtract(s, s->part[3 * i + 1], s->part[3 * i + 2], r, right);
+      SolveRow(s, i, right, r + 2 * i);
+      x[2 * i] += r[2 * i];
+      x[2 * i + 1] += r[2 * i + 1];
+    }
+  }
+}

@@ -1,0 +1,321 @@
+/* Conjugate gradients with multigrid on a hierarchy of meshes (src/hierarchy): coarse motions of the map are
+   interpolated in its image, which aggregation of the matrix's entries cannot see (docs/methods.md, Cascade). For
+   surfaces with one or two unknowns per vertex. The first rank has the levels; the others send their cells' matrices
+   and right-hand sides. */
+#include "linalg/onlevels.h"
+#include "base/quiet.h"
+#include "base/rows.h"
+#include "mesh/mesh_private.h"
+
+enum { MOST_SIZE = 6, PACKED = 21 }; /* unknowns of a triangle; entries of their matrix's upper triangle */
+
+typedef struct {
+  EqmHierarchy hierarchy;
+  EqmCascadeTarget target;
+  PetscSF vertices, cells; /* roots: owned vertices, owned cells; leaves: the finest level's */
+  PetscInt dim;            /* of places; 0 before there are any */
+  PetscInt below;          /* coarser levels that cycles have */
+  EqmLevelMap map[EQM_MOST_LEVELS];
+  EqmProlongation prolongation[EQM_MOST_LEVELS];
+  PetscBool has_prolongations;
+  PetscReal *frame;
+  EqmLevelSystem system;
+  EqmCycle cycle;
+  PetscReal *owned;  /* two per owned vertex */
+  PetscReal *packed; /* several ranks: matrices of the finest level's cells, during a filling */
+} OnLevels;
+
+/* What the first rank does while the others wait. Collective. */
+static PetscErrorCode OnFirstRank(EqmLinear linear, PetscErrorCode (*work)(EqmLinear, void *), void *context)
+{
+  char message[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode code = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscPushErrorHandler(EqmKeepMessage, message));
+  if (linear->mesh->rank == 0) code = work(linear, context);
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(EqmAgree(linear->mesh->comm, code, message));
+  PetscFunctionReturn(0);
+}
+
+/* ---- places, and the prolongations that belong to them */
+
+static PetscErrorCode DestroyProlongations(OnLevels *on)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmCycleDestroy(&on->cycle));
+  for (PetscInt k = 0; k < on->below && on->has_prolongations; k++)
+    PetscCall(EqmProlongationDestroy(&on->prolongation[k]));
+  on->has_prolongations = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Maps of all levels, at the first places: where vertices may move does not change. */
+static PetscErrorCode CreateMaps(OnLevels *on)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k <= on->below; k++)
+    PetscCall(EqmLevelMapCreate(&on->hierarchy->level[k], on->target, &on->map[k]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MakeProlongations(EqmLinear linear, void *context)
+{
+  OnLevels *const on = linear->data;
+
+  PetscFunctionBegin;
+  (void)context;
+  PetscCall(DestroyProlongations(on));
+  PetscCall(EqmLevelMapSetMotions(&on->map[0], on->target));
+  for (PetscInt k = 0; k < on->below; k++) {
+    PetscCall(EqmLevelMapRestrict(&on->map[k], &on->map[k + 1]));
+    PetscCall(EqmProlongationCreate(&on->map[k], &on->map[k + 1], &on->prolongation[k]));
+  }
+  on->has_prolongations = PETSC_TRUE;
+  PetscCall(EqmCycleCreate(&on->system.matrix, on->below, on->prolongation, &on->cycle));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetImage(EqmLinear linear, PetscInt dim, const PetscReal *x, const PetscReal *frame)
+{
+  OnLevels *const on = linear->data;
+
+  PetscFunctionBegin;
+  if (linear->mesh->rank == 0 && on->dim == 0) {
+    PetscCall(CreateMaps(on));
+    if (frame) PetscCall(PetscMalloc1(2 * dim * on->map[0].level->num_vertices, &on->frame));
+    on->map[0].frame = on->frame;
+  }
+  on->dim = dim;
+  PetscCall(EqmRowsToLeaves(on->vertices, dim, x, on->map[0].x));
+  if (frame) PetscCall(EqmRowsToLeaves(on->vertices, 2 * dim, frame, on->frame));
+  PetscCall(OnFirstRank(linear, MakeProlongations, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the matrix */
+
+/* A cell's matrix as the upper triangle of MOST_SIZE rows, of which those beyond its unknowns are left out. */
+static void Pack(PetscInt size, const PetscReal *matrix, PetscReal packed[PACKED])
+{
+  for (PetscInt i = 0, n = 0; i < size; i++) {
+    for (PetscInt j = i; j < size; j++) packed[n++] = matrix[size * i + j];
+  }
+}
+
+static void Unpack(PetscInt size, const PetscReal packed[PACKED], PetscReal *matrix)
+{
+  for (PetscInt i = 0, n = 0; i < size; i++) {
+    for (PetscInt j = i; j < size; j++) matrix[size * i + j] = matrix[size * j + i] = packed[n++];
+  }
+}
+
+/* How many unknowns the corners of a cell have. */
+static PetscInt SizeOfCell(const unsigned char *count, const PetscInt *v)
+{
+  return count[v[0]] + count[v[1]] + count[v[2]];
+}
+
+/* The owned cells' matrices to the first rank. */
+static PetscErrorCode SendCells(EqmLinear linear)
+{
+  OnLevels *const on = linear->data;
+  const EqmMesh mesh = linear->mesh;
+  PetscReal *mine;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(mesh->rank == 0 ? (size_t)PACKED * mesh->num_cells : 0, &on->packed));
+  PetscCall(PetscCalloc1((size_t)PACKED * mesh->num_owned_cells, &mine));
+#pragma omp parallel for schedule(static)
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
+    PetscReal matrix[MOST_SIZE * MOST_SIZE];
+    linear->cell_matrix(linear->context, c, matrix);
+    Pack(SizeOfCell(linear->unknowns.count, mesh->cells + 3 * c), matrix, mine + (size_t)PACKED * c);
+  }
+  PetscCall(EqmRowsToLeaves(on->cells, PACKED, mine, on->packed));
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(0);
+}
+
+static void AssemblePiece(EqmLinear linear, PetscInt piece)
+{
+  static const PetscReal nothing[MOST_SIZE] = {0., 0., 0., 0., 0., 0.};
+  OnLevels *const on = linear->data;
+  const EqmLevelPieces *const pieces = &on->system.cells;
+
+  for (PetscInt q = pieces->start[piece]; q < pieces->start[piece + 1]; q++) {
+    const PetscInt c = pieces->item[q];
+    PetscReal matrix[MOST_SIZE * MOST_SIZE];
+    if (on->packed)
+      Unpack(SizeOfCell(on->system.count, on->system.level->cells + 3 * c), on->packed + (size_t)PACKED * c, matrix);
+    else
+      linear->cell_matrix(linear->context, on->hierarchy->cell_order[c], matrix);
+    EqmLevelSystemAdd(&on->system, c, matrix, nothing);
+  }
+}
+
+/* Matrices of all levels, from the cells'. */
+static PetscErrorCode MakeCycle(EqmLinear linear, void *context)
+{
+  OnLevels *const on = linear->data;
+  const EqmLevelPieces *const pieces = &on->system.cells;
+  PetscBool *const success = context;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLevelSystemClear(&on->system));
+#pragma omp parallel for schedule(dynamic) if (pieces->count > 1)
+  for (PetscInt k = 0; k < pieces->count; k++) AssemblePiece(linear, k);
+  AssemblePiece(linear, pieces->count); /* the cells between pieces */
+  PetscCall(EqmLevelSystemEnd(&on->system, linear->diagonal_factor - 1., success));
+  if (*success) PetscCall(EqmCycleFill(on->cycle, success));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
+{
+  OnLevels *const on = linear->data;
+
+  PetscFunctionBegin;
+  PetscCheck(on->dim > 0, linear->mesh->comm, PETSC_ERR_ARG_WRONGSTATE, "no places of the map are known yet");
+  if (linear->mesh->size > 1) PetscCall(SendCells(linear));
+  PetscCall(OnFirstRank(linear, MakeCycle, success));
+  PetscCall(PetscFree(on->packed));
+  PetscCallMPI(MPI_Bcast(success, 1, MPIU_BOOL, 0, linear->mesh->comm));
+  PetscFunctionReturn(0);
+}
+
+/* ---- solutions */
+
+/* From unknowns to two per owned vertex, and back. */
+static void Spread(const EqmLinear linear, const PetscReal *unknowns, PetscReal *owned)
+{
+  const EqmUnknowns *const u = &linear->unknowns;
+
+  for (PetscInt v = 0; v < linear->mesh->num_owned; v++) {
+    for (PetscInt k = 0; k < 2; k++) owned[2 * v + k] = k < u->count[v] ? unknowns[u->start[v] - u->first + k] : 0.;
+  }
+}
+
+static void Collect(const EqmLinear linear, const PetscReal *owned, PetscReal *unknowns)
+{
+  const EqmUnknowns *const u = &linear->unknowns;
+
+  for (PetscInt v = 0; v < linear->mesh->num_owned; v++) {
+    for (PetscInt k = 0; k < u->count[v]; k++) unknowns[u->start[v] - u->first + k] = owned[2 * v + k];
+  }
+}
+
+typedef struct {
+  PetscInt iterations;
+  PetscInt success;
+} Outcome;
+
+static PetscErrorCode Iterate(EqmLinear linear, void *context)
+{
+  OnLevels *const on = linear->data;
+  Outcome *const outcome = context;
+  PetscBool success;
+
+  PetscFunctionBegin;
+  PetscCall(EqmCycleSolve(on->cycle, on->system.right, on->system.solution, linear->tolerance, &outcome->iterations,
+                          &success));
+  outcome->success = success;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x, PetscBool *success)
+{
+  OnLevels *const on = linear->data;
+  EqmWork *work;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
+  for (PetscInt k = 0; k < num_rhs; k++) {
+    Outcome outcome = {0, 0};
+    Spread(linear, b + (size_t)k * linear->num_owned, on->owned);
+    PetscCall(EqmRowsToLeaves(on->vertices, 2, on->owned, on->system.right));
+    PetscCall(OnFirstRank(linear, Iterate, &outcome));
+    PetscCallMPI(MPI_Bcast(&outcome, 2, MPIU_INT, 0, linear->mesh->comm));
+    work->cg_iterations += outcome.iterations;
+    if (!outcome.success) *success = PETSC_FALSE;
+    PetscCall(EqmRowsToRoots(on->vertices, 2, on->system.solution, on->owned));
+    Collect(linear, on->owned, x + (size_t)k * linear->num_owned);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- life */
+
+static PetscErrorCode Destroy(EqmLinear linear)
+{
+  OnLevels *const on = linear->data;
+
+  PetscFunctionBegin;
+  PetscCall(DestroyProlongations(on));
+  if (linear->mesh->rank == 0) {
+    for (PetscInt k = 0; k <= on->below && on->dim > 0; k++) PetscCall(EqmLevelMapDestroy(&on->map[k]));
+    PetscCall(EqmLevelSystemDestroy(&on->system));
+  }
+  PetscCall(PetscSFDestroy(&on->vertices));
+  PetscCall(PetscSFDestroy(&on->cells));
+  PetscCall(PetscFree(on->frame));
+  PetscCall(PetscFree(on->owned));
+  PetscCall(PetscFree(linear->data));
+  PetscFunctionReturn(0);
+}
+
+/* The finest level's pattern, and how many coarser ones there are down to one that is factored. */
+static PetscErrorCode MakeSystem(EqmLinear linear, void *context)
+{
+  enum { DIRECT = 1500 };
+  OnLevels *const on = linear->data;
+  const EqmHierarchyLevel *const level = on->hierarchy->level;
+
+  PetscFunctionBegin;
+  while (on->below + 1 < on->hierarchy->num_levels && level[on->below].num_vertices > DIRECT) on->below++;
+  PetscCall(EqmLevelSystemCreate(&level[0], context, &on->system));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetUp(EqmLinear linear)
+{
+  OnLevels *const on = linear->data;
+  const EqmMesh mesh = linear->mesh;
+  const PetscBool first = (PetscBool)(mesh->rank == 0);
+  const PetscInt n = first ? mesh->num_vertices : 0, m = first ? mesh->num_cells : 0;
+  unsigned char *count;
+
+  PetscFunctionBegin;
+  PetscCall(EqmRowsCreateSF(mesh->comm, mesh->num_owned, n, on->hierarchy->order, &on->vertices));
+  PetscCall(EqmRowsCreateSF(mesh->comm, mesh->num_owned_cells, m, on->hierarchy->cell_order, &on->cells));
+  PetscCall(PetscMalloc1(2 * mesh->num_owned, &on->owned));
+  PetscCall(PetscMalloc1(n, &count));
+  PetscCall(EqmFetchRows(mesh->comm, mesh->num_owned, n, on->hierarchy->order, MPI_UNSIGNED_CHAR, 1,
+                         linear->unknowns.count, count));
+  PetscCall(OnFirstRank(linear, MakeSystem, count));
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmLinearCreateOnLevels(EqmMesh mesh, const EqmUnknowns *unknowns, EqmHierarchy hierarchy,
+                                       EqmCascadeTarget target, EqmLinear *out)
+{
+  EqmLinear linear;
+  OnLevels *on;
+
+  PetscFunctionBegin;
+  PetscCall(EqmLinearBegin(mesh, unknowns, EQM_MATRIX_COUPLED, &linear));
+  PetscCall(PetscNew(&on));
+  on->hierarchy = hierarchy;
+  on->target = target;
+  linear->kind = EQM_SOLVER_HIERARCHY;
+  linear->data = on;
+  linear->factor = Factor;
+  linear->set_image = SetImage;
+  linear->solve = Solve;
+  linear->destroy = Destroy;
+  PetscCall(SetUp(linear));
+  *out = linear;
+  PetscFunctionReturn(0);
+}
