@@ -87,6 +87,15 @@ def check_model():
     assert reductions["1"] == 0. < reductions["2"], reductions
 
 
+def check_time_to_energy():
+    """Runs with a target end at it or below, the reference above nothing but itself; a row for each."""
+    run("time_to_energy.py", "1500", "--repeat", "1")
+    rows = table("time_to_energy")
+    assert [row["reached"] for row in rows] == ["True"] * 4 and len({row["settings"] for row in rows}) == 4, rows
+    assert all(float(row["energy"]) <= float(rows[0]["energy"]) and float(row["cpu_seconds"]) > 0. for row in rows), rows
+    assert rows[0]["coupled_factorizations"] == rows[3]["factorizations"] == "0" < rows[3]["set_ups"], rows
+
+
 def check_documented():
     """The short form of everything: each table has the columns that docs/performance.md lists."""
     said = run("measure.py")
@@ -108,6 +117,7 @@ if __name__ == "__main__":
     os.environ.pop("EQUIMAP_MPIRUN", None)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        for check in (check_documented,) if sys.argv[2:] == ["all"] else (check_gate, check_measure, check_dissection, check_model):
+        for check in (check_documented,) if sys.argv[2:] == ["all"] else (
+                check_gate, check_measure, check_time_to_energy, check_dissection, check_model):
             check()
         os.chdir("/")

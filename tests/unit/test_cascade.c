@@ -302,7 +302,8 @@ static PetscErrorCode TestGalerkin(const char *shape, EqmCascadeTarget target)
   PetscCall(CaseGenerate(PETSC_COMM_SELF, shape, 800, target, &test));
   PetscCall(TwoLevelsCreate(&test, &two));
   PetscCall(FillSystem(&two));
-  PetscCall(EqmProlongationGalerkin(&two.prolongation, &two.system.matrix, &coarse));
+  PetscCall(EqmProlongationGalerkinPattern(&two.prolongation, &two.system.matrix, &coarse));
+  PetscCall(EqmProlongationGalerkinFill(&two.prolongation, &two.system.matrix, &coarse));
   n = 2 * two.prolongation.num_fine;
   m = 2 * two.prolongation.num_coarse;
   PetscCall(PetscRandomCreate(PETSC_COMM_SELF, &random));

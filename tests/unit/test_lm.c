@@ -241,7 +241,8 @@ static PetscErrorCode TestSecondDerivative(EqmSolver solver)
   PetscCall(PetscMalloc2(5 * m, &residual, m, &second));
   PetscCall(EqmLmFactor(solver->method, &success));
   PetscCall(EqmLmSolveForStep(solver->method, &success));
-  PetscCall(EqmLmSolveForCurve(solver->method, &ratio));
+  PetscCall(EqmLmSolveForCurve(solver->method, &ratio, &success));
+  CHECK(success, "no curve");
   PetscCall(PetscArraycpy(second, lm->rho_second, m));
   PetscCall(TestPrediction(solver));
   PetscCall(VecDuplicate(lm->step, &step));

@@ -1,0 +1,85 @@
+"""lm by cycles on a hierarchy of meshes: no factor, a map like that of a factor, the same bits after a restart and for any
+number of threads, the same result on other ranks; what it cannot do is refused.
+
+usage: python3 test_cycles.py EQUIMAP [RANKS]
+"""
+import json
+import os
+import sys
+import tempfile
+
+import h5py
+import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from program import Program  # noqa: E402
+
+CYCLES = ("-start", "cascade", "-linear_solver", "hierarchy", "-energy_rtol", 0, "-ratio_tol", 0)
+
+
+def run(program, name, *options, target="disk", mesh="mesh.h5", **how):
+    program.succeed(target, mesh, "-o", name + ".h5", "-summary", name + ".json", "-quiet", *options, codes=(0, 4), **how)
+    return json.loads(program.read(name + ".json"))
+
+
+def coordinates(program, name):
+    with h5py.File(program.file(name + ".h5"), "r") as result:
+        return result["/map/coordinates"][...]
+
+
+def check_maps(program):
+    """No factor at all, no fold, and an energy that few steps leave."""
+    for target, shape, most in (("disk", "hills", 3e-4), ("square", "hills", 5e-5), ("sphere", "head", 1e-4)):
+        program.succeed("generate", shape, "-n", 6000, "-o", f"{shape}.h5", ranks=1)
+        found = run(program, target, *CYCLES, "-max_it", 4, target=target, mesh=f"{shape}.h5")
+        work = found["work"]
+        assert work["coupled_factorizations"] == work["factorizations"] == 0, work
+        assert work["set_ups"] >= 4 and work["cg_iterations"] >= work["set_ups"], work
+        assert found["folds"] == 0 and found["energy"]["final"] < most, (target, found["energy"])
+        assert found["linear_solver"].startswith("hierarchy"), found["linear_solver"]
+
+
+def check_bits(program):
+    """A restart between two matrices that share their coarse motions; threads."""
+    run(program, "whole", *CYCLES, "-max_it", 4)
+    run(program, "begun", *CYCLES, "-max_it", 2, "-checkpoint", "c.h5", "-checkpoint_every", 2)
+    run(program, "gone-on", *CYCLES, "-max_it", 4, "-restart", "c.h5")
+    assert numpy.array_equal(coordinates(program, "gone-on"), coordinates(program, "whole")), "a restart changes bits"
+    assert json.loads(program.read("gone-on.json"))["work"] == json.loads(program.read("whole.json"))["work"]
+    run(program, "threads", *CYCLES, "-max_it", 4, "-threads", 2)
+    assert numpy.array_equal(coordinates(program, "threads"), coordinates(program, "whole")), "threads change bits"
+
+
+def check_ranks(program):
+    other = run(program, "alone", *CYCLES, "-max_it", 4, ranks=1)
+    here = run(program, "here", *CYCLES, "-max_it", 4)
+    assert abs(here["energy"]["final"] - other["energy"]["final"]) < 1e-4 * other["energy"]["final"]
+    assert here["work"] == other["work"], (here["work"], other["work"])
+
+
+def check_refusals(program):
+    with open(program.file("angles.csv"), "w", encoding="utf-8") as file:
+        file.write("vertex,angle\n")
+        with h5py.File(program.file("whole.h5"), "r") as result:
+            xy, cells = result["/map/coordinates"][...], result["/mesh/cells"][...]
+        edges = numpy.sort(numpy.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]]), axis=1)
+        unique, count = numpy.unique(edges, axis=0, return_counts=True)
+        for v in numpy.unique(unique[count == 1]):
+            file.write(f"{v},{numpy.arctan2(xy[v, 1], xy[v, 0])}\n")
+    refused = program.run("disk", "mesh.h5", "-o", "x.h5", "-linear_solver", "hierarchy", "-boundary_angles", "angles.csv")
+    assert refused.returncode == 2 and "hierarchy moves the boundary, which is held" in refused.stderr, refused
+    assert not os.path.exists(program.file("x.h5"))
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
+        program.succeed("generate", "hills", "-n", 3000, "-o", "mesh.h5", ranks=1)
+        check_maps(program)
+        check_bits(program)
+        check_ranks(program)
+        check_refusals(program)
+
+
+if __name__ == "__main__":
+    main()
