@@ -7,9 +7,9 @@
     perf/time_to_energy.py --settings "-start cascade -linear_solver hierarchy" --repeat 5
 
 The reference runs first (disk, square: -method ncg -max_it 100; sphere: -method rgd -max_it 100); its energy is the target of the other
-settings (-energy_target). All of them take turns, --repeat rounds; of a setting the median is told of: seconds of the processor in all
-and without what every run does alike (reading, the distribution, measuring, writing: those of a run with -max_it 0 from the harmonic or
-the Gauss map, taken in the same rounds), and the ratio of the reference's to it, the median over the rounds. One rank, one thread. Leaves
+settings (-energy_target). All of them take turns, --repeat rounds; of a setting the median is told of: seconds of the processor in all,
+own ones without what every run does alike (reading, distributing, measuring, writing; the share of start and iterations is that of the
+program's clock), and the ratios of the reference's to them, medians over the rounds. One rank, one thread. Leaves
 FOLDER/time_to_energy.csv, a row per mesh and setting, and prints it with the exponent by which seconds grow with vertices.
 """
 import argparse
@@ -23,9 +23,6 @@ from tables import exponent
 
 REFERENCE = {"disk": ("-method", "ncg", "-max_it", "100"), "square": ("-method", "ncg", "-max_it", "100"),
              "sphere": ("-method", "rgd", "-max_it", "100")}
-NOTHING = {"disk": ("-method", "fixed-point", "-start", "arc-length", "-max_it", "0"),
-           "square": ("-method", "fixed-point", "-start", "arc-length", "-max_it", "0"),
-           "sphere": ("-method", "rgd", "-start", "gauss", "-max_it", "0")}
 SETTINGS = ("", "-method cascade", "-start cascade -linear_solver hierarchy")
 
 
@@ -58,26 +55,25 @@ def prepare(args, name):
 def timed(args, mesh, options):
     before = cpu_seconds()
     run = run_once(args.program, args.command, mesh, os.path.join(args.folder, "time_to_energy"), options=options)
-    return cpu_seconds() - before, run
+    seconds, used = run["seconds"], cpu_seconds() - before
+    return used, used * (seconds["start"] + seconds["minimise"]) / seconds["total"], run
 
 
 def measure(args, mesh):
     """A row per setting, the reference first."""
-    reference = timed(args, mesh, REFERENCE[args.command])[1]
+    reference = timed(args, mesh, REFERENCE[args.command])[-1]
     target = ("-energy_target", repr(reference["energy"]["final"]))
-    runs = {"nothing": NOTHING[args.command], " ".join(REFERENCE[args.command]): REFERENCE[args.command],
+    runs = {" ".join(REFERENCE[args.command]): REFERENCE[args.command],
             **{words or "default": (*words.split(), *target) for words in args.settings}}
     rounds = [{name: timed(args, mesh, options) for name, options in runs.items()} for _ in range(args.repeat)]
-    names = list(runs)[1:]
+    first = next(iter(runs))
     rows = []
-    for name in names:
-        own = [turn[name][0] - turn["nothing"][0] for turn in rounds]
-        base = [turn[names[0]][0] - turn["nothing"][0] for turn in rounds]
-        last = rounds[-1][name][1]
+    for name in runs:
+        last = rounds[-1][name][-1]
         rows.append({"mesh": os.path.basename(mesh), "mesh.vertices": last["mesh"]["vertices"], "settings": name,
-                     "cpu_seconds": statistics.median(turn[name][0] for turn in rounds), "own_seconds": statistics.median(own),
-                     "ratio": statistics.median(turn[names[0]][0] / turn[name][0] for turn in rounds),
-                     "own_ratio": statistics.median(b / max(o, 1e-3) for b, o in zip(base, own)),
+                     "cpu_seconds": statistics.median(turn[name][0] for turn in rounds), "own_seconds": statistics.median(turn[name][1] for turn in rounds),
+                     "ratio": statistics.median(turn[first][0] / turn[name][0] for turn in rounds),
+                     "own_ratio": statistics.median(turn[first][1] / turn[name][1] for turn in rounds),
                      "energy": last["energy"]["final"], "reached": last["energy"]["final"] <= reference["energy"]["final"],
                      "angle": last["angle_error_deg"]["mean"], "folds": last["folds"], "iterations": last["iterations"],
                      **last["work"]})

@@ -3,6 +3,9 @@
 #include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
 
+/* Linear solvers have all levels on the first rank: from several ranks no larger mesh. */
+static const PetscInt most_for_linear = 1000000;
+
 static EqmCascadeTarget TargetOf(EqmDomain domain)
 {
   if (domain->dim == 3) return EQM_TARGET_SPHERE;
@@ -18,12 +21,13 @@ const char *EqmLevelsObstacle(EqmProblem problem)
 const char *EqmLevelsObstacleToLinear(EqmProblem problem)
 {
   if (problem->mesh->cell_size != 3) return "is for surfaces";
-  if (problem->mesh->size > 1 && problem->mesh->num_vertices > most_gathered)
-    return "works on one rank: not from several for more than a million vertices";
+  if (problem->mesh->size > 1 && problem->mesh->num_vertices > most_for_linear)
+    return "works on one rank, and from several for up to a million vertices";
   return EqmLevelsObstacle(problem);
 }
 
-static PetscErrorCode Create(EqmProblem problem, EqmLevels *levels)
+/* `all_on_first`: however large the mesh is, all levels are on the first rank. */
+static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLevels *levels)
 {
   const EqmDomain domain = problem->domain;
   const EqmMesh mesh = problem->mesh;
@@ -37,7 +41,7 @@ static PetscErrorCode Create(EqmProblem problem, EqmLevels *levels)
     corner[v] = (PetscBool)(EqmDomainMotion(domain, v) == &EqmMotionCorner);
   PetscCall(EqmHierarchyOptionsDefault(&options));
   options.corner = corner;
-  if (mesh->size > 1 && mesh->num_vertices > options.gathered)
+  if (mesh->size > 1 && mesh->num_vertices > options.gathered && !all_on_first)
     PetscCall(EqmSharedCreate(mesh, &options, &levels->shared));
   else
     PetscCall(EqmHierarchyCreate(mesh, &options, &levels->hierarchy));
@@ -50,7 +54,7 @@ PetscErrorCode EqmProblemGetLevels(EqmProblem problem, EqmLevels **levels)
   PetscFunctionBegin;
   if (!problem->levels) {
     PetscCall(PetscNew(&problem->levels));
-    PetscCall(Create(problem, problem->levels));
+    PetscCall(Create(problem, PETSC_FALSE, problem->levels));
   }
   *levels = problem->levels;
   PetscFunctionReturn(0);
@@ -71,13 +75,17 @@ PetscErrorCode EqmProblemDropLevels(EqmProblem problem)
 PetscErrorCode EqmProblemCreateLinearOnLevels(EqmProblem problem, EqmLinear *linear)
 {
   const EqmUnknowns unknowns = EqmDomainUnknowns(problem->domain);
-  EqmLevels *levels;
 
   PetscFunctionBegin;
   PetscCall(EqmLinearDestroy(&problem->scalar));
   PetscCall(PetscFree(problem->scalar_count));
-  PetscCall(EqmProblemGetLevels(problem, &levels));
-  PetscCall(EqmLinearCreateOnLevels(problem->mesh, &unknowns, levels->hierarchy, levels->target, linear));
+  if (problem->levels && problem->levels->shared) PetscCall(EqmProblemDropLevels(problem));
+  if (!problem->levels) {
+    PetscCall(PetscNew(&problem->levels));
+    PetscCall(Create(problem, PETSC_TRUE, problem->levels));
+  }
+  PetscCall(
+      EqmLinearCreateOnLevels(problem->mesh, &unknowns, problem->levels->hierarchy, problem->levels->target, linear));
   PetscCall(EqmLinearDescribe(*linear, problem->linear_solver, sizeof(problem->linear_solver)));
   PetscFunctionReturn(0);
 }
