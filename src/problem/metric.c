@@ -83,8 +83,9 @@ typedef struct {
   const PetscReal *weights; /* of L_V */
 } GaussNewton;
 
-/* Weight of L_V in the metric of the ball. */
-static const PetscReal l_v_share = .05;
+/* Weight of L_V in the metric of the ball. The more, the better multigrid cycles do; the less, the sooner come the
+   motions that hardly compress, which take most of the iterations. */
+static const PetscReal l_v_share = .01;
 
 /* Half of the objective's Hessian times A without the curvature of the cells: da da^T / w of the energy, a share of L_V
    in each coordinate, which keeps it definite, and the matrices of the added terms. */

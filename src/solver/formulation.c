@@ -58,14 +58,14 @@ static const EqmMethodDefaults conformal_on_sphere[] = {
 };
 
 static const EqmMethodDefaults in_ball[] = {
-    {"lbfgs", "lbfgs", "fixed-point", 500, 1e-8, 0., 0., ConfigureBallLbfgs, NULL},
+    {"lbfgs", "lbfgs", "guarded", 500, 1e-8, 0., 0., ConfigureBallLbfgs, NULL},
     {"newton", "newton", "fixed-point", 300, 1e-9, 0., 0., NULL, NULL},
     {"fixed-point", "fixed-point", "harmonic", 500, 1e-6, 0., 0., NULL, NULL},
     {"ncg", "ncg", "fixed-point", 500, 1e-6, 0., 0., NULL, "spherical-ball"},
 };
 
 static const EqmMethodDefaults in_cube[] = {
-    {"lbfgs", "lbfgs", "fixed-point", 500, 1e-8, 0., 0., ConfigureBallLbfgs, NULL},
+    {"lbfgs", "lbfgs", "guarded", 500, 1e-8, 0., 0., ConfigureBallLbfgs, NULL},
     {"newton", "newton", "fixed-point", 300, 1e-9, 0., 0., NULL, NULL},
     {"fixed-point", "fixed-point", "harmonic", 500, 1e-6, 0., 0., NULL, NULL},
     {"ncg", "ncg", "fixed-point", 500, 1e-6, 0., 0., NULL, NULL},

@@ -172,9 +172,23 @@ static PetscErrorCode PlaceBoundary(EqmProblem problem, EqmIterate iterate, cons
 /* Relative tolerance of iterative solves: the error after a solve over that before it. */
 static const PetscReal start_tolerance = 1e-3;
 
-static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+/* Ratios' variance up to which a map without folds needs no more fixed-point steps before a method takes over. */
+static const PetscReal good_variance = .1;
+
+static PetscErrorCode IsGood(EqmProblem problem, EqmIterate iterate, PetscBool *is_good)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmIterateUpdate(problem, iterate));
+  *is_good = (PetscBool)(iterate->totals.folds == 0 && iterate->totals.energy < good_variance * iterate->totals.total);
+  PetscFunctionReturn(0);
+}
+
+/* The harmonic map, then fixed-point steps: as many as the options say, or no more than that while they are needed. */
+static PetscErrorCode Iterate(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options,
+                              PetscBool while_needed)
 {
   const EqmMesh mesh = problem->mesh;
+  PetscBool is_good = PETSC_FALSE;
   signed char *group;
   PetscReal *weights;
 
@@ -183,15 +197,30 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   for (PetscInt v = 0; v < mesh->num_local; v++) group[v] = mesh->on_boundary[v] ? EQM_GROUP_FIXED : 0;
   PetscCall(PlaceMesh(mesh, options->anisotropic_scaling, iterate->place.x));
   /* L_V of the mesh's own places is the Laplacian of the Dirichlet energy: the first step is the harmonic map */
-  for (PetscInt k = 0; k <= options->steps; k++) {
+  for (PetscInt k = 0; k <= options->steps && !is_good; k++) {
     PetscCall(EqmLaplacianWeights(problem->domain, EQM_LAPLACIAN_STRETCH, &iterate->place, weights));
     if (k == 0) PetscCall(PlaceBoundary(problem, iterate, options));
     PetscCall(EqmHeldImprove(problem, weights, group, 3, start_tolerance, iterate->place.x));
     if (k == 0 && options->map_surface) PetscCall(TurnMirrored(problem, iterate));
     PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, (PetscBool)(k > 0))); /* successive images differ little */
+    if (while_needed && k < options->steps) PetscCall(IsGood(problem, iterate, &is_good));
   }
   PetscCall(EqmLinearKeepCoarseSpaces(problem->scalar, PETSC_FALSE));
   PetscCall(PetscFree2(weights, group));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+{
+  PetscFunctionBegin;
+  PetscCall(Iterate(problem, iterate, options, PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunGuarded(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
+{
+  PetscFunctionBegin;
+  PetscCall(Iterate(problem, iterate, options, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
@@ -200,3 +229,6 @@ const EqmStartType EqmStartBallHarmonic = {EQM_STARTS_BALL, "harmonic",
 const EqmStartType EqmStartBallFixedPoint = {EQM_STARTS_BALL, "fixed-point",
                                              "harmonic, then fixed-point steps with the boundary held (003 section 4)",
                                              4, Run};
+const EqmStartType EqmStartBallGuarded = {EQM_STARTS_BALL, "guarded",
+                                          "the same steps, while tetrahedra are folded or volumes far from equal", 4,
+                                          RunGuarded};

@@ -9,7 +9,7 @@ static const EqmStartType *starts[MOST_STARTS] = {
     &EqmStartPlaneArcLength, &EqmStartSphereLinearType, &EqmStartSphereFixedPoint, &EqmStartSphereDescending,
     &EqmStartSphereGuarded,  &EqmStartSphereConformal,  &EqmStartSphereResolved,   &EqmStartSphereNormals,
     &EqmStartSphereGauss,    &EqmStartSphereTutte,      &EqmStartBallHarmonic,     &EqmStartBallFixedPoint,
-    &EqmStartPlaneCascade,   &EqmStartSphereCascade,    &EqmStartSphereSolidAngle,
+    &EqmStartBallGuarded,    &EqmStartPlaneCascade,     &EqmStartSphereCascade,    &EqmStartSphereSolidAngle,
 };
 
 PetscErrorCode EqmStartRegister(const EqmStartType *type)

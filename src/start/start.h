@@ -64,8 +64,8 @@ PETSC_INTERN const EqmStartType EqmStartPlaneHarmonic, EqmStartPlaneFixedPoint, 
     EqmStartPlaneGuarded, EqmStartPlaneArcLength, EqmStartSphereLinearType, EqmStartSphereFixedPoint,
     EqmStartSphereDescending, EqmStartSphereGuarded, EqmStartSphereConformal, EqmStartSphereResolved,
     EqmStartSphereNormals, EqmStartSphereGauss, EqmStartSphereTutte, EqmStartBallHarmonic, EqmStartBallFixedPoint,
-    EqmStartPlaneCascade, EqmStartSphereCascade, EqmStartSphereSolidAngle, EqmStartFilePlane, EqmStartFileSphere,
-    EqmStartFileBall;
+    EqmStartBallGuarded, EqmStartPlaneCascade, EqmStartSphereCascade, EqmStartSphereSolidAngle, EqmStartFilePlane,
+    EqmStartFileSphere, EqmStartFileBall;
 
 /* Map the boundary of a solid as its first maps do, by options->map_surface: x, three per local vertex, of boundary
    vertices. Collective. */
