@@ -76,8 +76,8 @@ typedef enum {
 } EqmSolverKind;
 PETSC_INTERN const char *const EqmSolverKinds[];
 
-/* Of the factors of EQM_MATRIX_STEP and EQM_MATRIX_METRIC; all others are double. */
-typedef enum { EQM_PRECISION_SINGLE, EQM_PRECISION_DOUBLE } EqmPrecision;
+/* Of the factors of EQM_MATRIX_STEP; all others are double. Auto: single where that saves time. */
+typedef enum { EQM_PRECISION_AUTO, EQM_PRECISION_SINGLE, EQM_PRECISION_DOUBLE } EqmPrecision;
 PETSC_INTERN const char *const EqmPrecisions[];
 
 /* What a factorisation takes, known before there are numbers; zero for multigrid and PETSc's solvers. */
@@ -97,7 +97,7 @@ typedef enum {
   EQM_MATRIX_SCALAR,  /* one unknown per vertex, easy for multigrid */
   EQM_MATRIX_COUPLED, /* several, hard for multigrid: factored wherever that fits */
   EQM_MATRIX_STEP,    /* the same; solutions are steps to try, for which factors in single precision will do */
-  EQM_MATRIX_METRIC   /* several, only applied, where one cycle will do as well, or a factor in single precision */
+  EQM_MATRIX_METRIC   /* several, only applied, where one cycle will do as well; stiff where a barrier is in it */
 } EqmMatrixUse;
 
 /* A solver for one symmetric positive definite matrix whose values change and whose pattern stays. */

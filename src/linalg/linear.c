@@ -10,6 +10,8 @@ enum { MOST_FRONT = 8000 };
 static const PetscReal most_flops = 8e5;
 /* The metrics of solids come there far earlier: not even an analysis would pay. */
 enum { MOST_IN_METRIC = 60000 };
+/* Factors of fewer unknowns stay in the processor's cache whatever their precision. */
+enum { LEAST_SINGLE = 10000 };
 /* Relative residual of an iteration that stands for an exact solve. */
 static const PetscReal exact = 1e-10;
 static const PetscReal gib = 1024. * 1024. * 1024.;
@@ -138,7 +140,7 @@ static PetscErrorCode Obey(EqmLinear linear, EqmOrdering ordering, EqmSolverKind
 
 PetscErrorCode EqmLinearBegin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use, EqmLinear *linear)
 {
-  PetscEnum precision = (PetscEnum)EQM_PRECISION_SINGLE;
+  PetscEnum precision = (PetscEnum)EQM_PRECISION_AUTO;
   PetscFunctionBegin;
   PetscCall(PetscNew(linear));
   (*linear)->mesh = mesh;
@@ -147,9 +149,10 @@ PetscErrorCode EqmLinearBegin(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatr
   (*linear)->num_owned = unknowns->num_owned;
   (*linear)->tolerance = exact;
   PetscCall(PetscOptionsGetEnum(NULL, NULL, "-linear_precision", EqmPrecisions, &precision, NULL));
-  (*linear)->is_single =
-      (PetscBool)(precision == (PetscEnum)EQM_PRECISION_SINGLE && (use == EQM_MATRIX_STEP || use == EQM_MATRIX_METRIC));
   PetscCall(MPIU_Allreduce(&unknowns->num_owned, &(*linear)->num_unknowns, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  if (precision == (PetscEnum)EQM_PRECISION_AUTO)
+    precision = (PetscEnum)((*linear)->num_unknowns < LEAST_SINGLE ? EQM_PRECISION_DOUBLE : EQM_PRECISION_SINGLE);
+  (*linear)->is_single = (PetscBool)(precision == (PetscEnum)EQM_PRECISION_SINGLE && use == EQM_MATRIX_STEP);
   PetscFunctionReturn(0);
 }
 

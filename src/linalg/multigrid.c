@@ -141,24 +141,25 @@ static PetscErrorCode SetFields(EqmLinear linear, PetscInt count, const PetscRea
   PetscFunctionReturn(0);
 }
 
-/* Set up all levels. Smoothers are symmetric Gauss-Seidel sweeps, which are safe for every definite matrix; Chebyshev's
-   are not where the estimate of the spectrum fails. Within conjugate gradients a second sweep costs more than it saves;
-   where a cycle stands for the inverse, two take a third off the iterations. The shift, far below every entry, is for
+/* Smoothers are symmetric Gauss-Seidel sweeps, which are safe for every definite matrix; Chebyshev's are not where the
+   estimate of the spectrum fails. A second sweep costs more than it saves. The shift, far below every entry, is for
    coarse rows of aggregates that are too small for all the fields. From three ranks on (the last line), coarse matrices
    are sums in an order that does not depend on whose message comes first, as it does in PETSc's own choice of product,
    which is faster. The options database may say otherwise. */
-static PetscErrorCode SetUp(EqmLinear linear, KSP ksp)
+static const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "richardson"},
+                                          {"-multigrid_mg_levels_ksp_max_it", "1"},
+                                          {"-multigrid_mg_levels_pc_type", "sor"},
+                                          {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"},
+                                          {"-matptap_via", "backend"}};
+
+/* Set up all levels. */
+static PetscErrorCode SetUp(KSP ksp, PetscMPIInt size)
 {
-  const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "richardson"},
-                                     {"-multigrid_mg_levels_ksp_max_it", linear->use == EQM_MATRIX_METRIC ? "2" : "1"},
-                                     {"-multigrid_mg_levels_pc_type", "sor"},
-                                     {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"},
-                                     {"-matptap_via", "backend"}};
   const PetscInt count = (PetscInt)(sizeof(defaults) / sizeof(defaults[0]));
   PetscOptions options;
 
   PetscFunctionBegin;
-  PetscCall(EqmOptionsPushDefaults(defaults, linear->mesh->size > 2 ? count : count - 1, &options));
+  PetscCall(EqmOptionsPushDefaults(defaults, size > 2 ? count : count - 1, &options));
   PetscCall(KSPSetUp(ksp));
   PetscCall(EqmOptionsPopDefaults(&options));
   PetscFunctionReturn(0);
@@ -207,7 +208,7 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscCall(KSPSetOperators(g->ksp, matrix, matrix));
   PetscCall(KSPGetPC(g->ksp, &pc));
   PetscCall(PCGAMGSetReuseInterpolation(pc, linear->keeps_coarse_spaces));
-  PetscCall(SetUp(linear, g->ksp));
+  PetscCall(SetUp(g->ksp, linear->mesh->size));
   PetscCall(PCGetFailedReason(pc, &failed));
   *success = (PetscBool)(failed == PC_NOERROR);
   PetscFunctionReturn(0);

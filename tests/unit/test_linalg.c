@@ -312,8 +312,9 @@ static PetscErrorCode TestUnknowns(EqmMesh mesh, const EqmUnknowns *unknowns, Eq
       PetscCall(TestOnSeveralRanks(mesh, ordering, unknowns, option));
   }
   if (use != EQM_MATRIX_SCALAR && mesh->num_vertices > 100) { /* else ranks have nothing inside */
-    PetscCall(TestSolver(mesh, ordering, unknowns, EQM_MATRIX_STEP, "-linear_solver auto"));
-    PetscCall(TestSolver(mesh, ordering, unknowns, EQM_MATRIX_STEP, "-linear_solver substructure"));
+    PetscCall(TestSolver(mesh, ordering, unknowns, EQM_MATRIX_STEP, "-linear_precision single"));
+    PetscCall(
+        TestSolver(mesh, ordering, unknowns, EQM_MATRIX_STEP, "-linear_precision single -linear_solver substructure"));
     PetscCall(TestPrecision(mesh, ordering, unknowns));
   }
   PetscCall(TestMemory(mesh, ordering, unknowns));
@@ -364,7 +365,7 @@ static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, 
 
   PetscFunctionBegin;
   omp_set_num_threads(threads);
-  PetscCall(TestOptionsBegin("-linear_solver multifrontal", &options));
+  PetscCall(TestOptionsBegin("-linear_solver multifrontal -linear_precision single", &options));
   PetscCall(EqmOrderingCreate(mesh, &ordering));
   PetscCall(EqmLinearCreate(mesh, ordering, unknowns, use, &linear));
   PetscCall(EqmLinearFactor(linear, ModelCell, &model, 1., &success));
