@@ -3,7 +3,7 @@
 #include "hierarchy/sharedrows.h"
 #include "base/exchange.h"
 #include "base/rows.h"
-#include <stdlib.h>
+#include "base/sort.h"
 
 /* A block on its way. */
 typedef struct {
@@ -191,7 +191,7 @@ static PetscErrorCode Assemble(PetscInt num, const Item *items, EqmSharedRows *c
   PetscCall(PetscMalloc1(num, &c->entry));
   for (PetscInt i = 0; i < c->num_rows; i++) {
     c->start[i] = at;
-    qsort(sorted + begin[i], (size_t)(begin[i + 1] - begin[i]), sizeof(*sorted), CompareColumns);
+    EqmSort(sorted + begin[i], (size_t)(begin[i + 1] - begin[i]), sizeof(*sorted), CompareColumns);
     for (PetscInt k = begin[i]; k < begin[i + 1]; k++) {
       if (k > begin[i] && sorted[k].column == sorted[k - 1].column) {
         for (int e = 0; e < 4; e++) c->entry[at - 1].e[e] += sorted[k].entry.e[e];

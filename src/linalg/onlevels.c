@@ -3,11 +3,10 @@
    surfaces with one or two unknowns per vertex. The first rank has the levels; the others send their cells' matrices
    and right-hand sides. */
 #include "linalg/onlevels.h"
+#include "linalg/levelrows.h"
 #include "base/quiet.h"
 #include "base/rows.h"
 #include "mesh/mesh_private.h"
-
-enum { MOST_SIZE = 6, PACKED = 21 }; /* unknowns of a triangle; entries of their matrix's upper triangle */
 
 typedef struct {
   EqmHierarchy hierarchy;
@@ -96,21 +95,6 @@ static PetscErrorCode SetImage(EqmLinear linear, PetscInt dim, const PetscReal *
 
 /* ---- the matrix */
 
-/* A cell's matrix as the upper triangle of MOST_SIZE rows, of which those beyond its unknowns are left out. */
-static void Pack(PetscInt size, const PetscReal *matrix, PetscReal packed[PACKED])
-{
-  for (PetscInt i = 0, n = 0; i < size; i++) {
-    for (PetscInt j = i; j < size; j++) packed[n++] = matrix[size * i + j];
-  }
-}
-
-static void Unpack(PetscInt size, const PetscReal packed[PACKED], PetscReal *matrix)
-{
-  for (PetscInt i = 0, n = 0; i < size; i++) {
-    for (PetscInt j = i; j < size; j++) matrix[size * i + j] = matrix[size * j + i] = packed[n++];
-  }
-}
-
 /* How many unknowns the corners of a cell have. */
 static PetscInt SizeOfCell(const unsigned char *count, const PetscInt *v)
 {
@@ -125,30 +109,32 @@ static PetscErrorCode SendCells(EqmLinear linear)
   PetscReal *mine;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(mesh->rank == 0 ? (size_t)PACKED * mesh->num_cells : 0, &on->packed));
-  PetscCall(PetscCalloc1((size_t)PACKED * mesh->num_owned_cells, &mine));
+  PetscCall(PetscMalloc1(mesh->rank == 0 ? (size_t)EQM_PACKED_TRIANGLE * mesh->num_cells : 0, &on->packed));
+  PetscCall(PetscCalloc1((size_t)EQM_PACKED_TRIANGLE * mesh->num_owned_cells, &mine));
 #pragma omp parallel for schedule(static)
   for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
-    PetscReal matrix[MOST_SIZE * MOST_SIZE];
+    PetscReal matrix[EQM_MOST_TRIANGLE_SIZE * EQM_MOST_TRIANGLE_SIZE];
     linear->cell_matrix(linear->context, c, matrix);
-    Pack(SizeOfCell(linear->unknowns.count, mesh->cells + 3 * c), matrix, mine + (size_t)PACKED * c);
+    EqmTrianglePack(SizeOfCell(linear->unknowns.count, mesh->cells + 3 * c), matrix,
+                    mine + (size_t)EQM_PACKED_TRIANGLE * c);
   }
-  PetscCall(EqmRowsToLeaves(on->cells, PACKED, mine, on->packed));
+  PetscCall(EqmRowsToLeaves(on->cells, EQM_PACKED_TRIANGLE, mine, on->packed));
   PetscCall(PetscFree(mine));
   PetscFunctionReturn(0);
 }
 
 static void AssemblePiece(EqmLinear linear, PetscInt piece)
 {
-  static const PetscReal nothing[MOST_SIZE] = {0., 0., 0., 0., 0., 0.};
+  static const PetscReal nothing[EQM_MOST_TRIANGLE_SIZE] = {0., 0., 0., 0., 0., 0.};
   OnLevels *const on = linear->data;
   const EqmLevelPieces *const pieces = &on->system.cells;
 
   for (PetscInt q = pieces->start[piece]; q < pieces->start[piece + 1]; q++) {
     const PetscInt c = pieces->item[q];
-    PetscReal matrix[MOST_SIZE * MOST_SIZE];
+    PetscReal matrix[EQM_MOST_TRIANGLE_SIZE * EQM_MOST_TRIANGLE_SIZE];
     if (on->packed)
-      Unpack(SizeOfCell(on->system.count, on->system.level->cells + 3 * c), on->packed + (size_t)PACKED * c, matrix);
+      EqmTriangleUnpack(SizeOfCell(on->system.count, on->system.level->cells + 3 * c),
+                        on->packed + (size_t)EQM_PACKED_TRIANGLE * c, matrix);
     else
       linear->cell_matrix(linear->context, on->hierarchy->cell_order[c], matrix);
     EqmLevelSystemAdd(&on->system, c, matrix, nothing);
@@ -187,25 +173,6 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
 
 /* ---- solutions */
 
-/* From unknowns to two per owned vertex, and back. */
-static void Spread(const EqmLinear linear, const PetscReal *unknowns, PetscReal *owned)
-{
-  const EqmUnknowns *const u = &linear->unknowns;
-
-  for (PetscInt v = 0; v < linear->mesh->num_owned; v++) {
-    for (PetscInt k = 0; k < 2; k++) owned[2 * v + k] = k < u->count[v] ? unknowns[u->start[v] - u->first + k] : 0.;
-  }
-}
-
-static void Collect(const EqmLinear linear, const PetscReal *owned, PetscReal *unknowns)
-{
-  const EqmUnknowns *const u = &linear->unknowns;
-
-  for (PetscInt v = 0; v < linear->mesh->num_owned; v++) {
-    for (PetscInt k = 0; k < u->count[v]; k++) unknowns[u->start[v] - u->first + k] = owned[2 * v + k];
-  }
-}
-
 typedef struct {
   PetscInt iterations;
   PetscInt success;
@@ -233,14 +200,14 @@ static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal 
   PetscCall(EqmLedgerGetWork(linear->mesh->ledger, &work));
   for (PetscInt k = 0; k < num_rhs; k++) {
     Outcome outcome = {0, 0};
-    Spread(linear, b + (size_t)k * linear->num_owned, on->owned);
+    EqmUnknownsSpread(&linear->unknowns, linear->mesh->num_owned, b + (size_t)k * linear->num_owned, on->owned);
     PetscCall(EqmRowsToLeaves(on->vertices, 2, on->owned, on->system.right));
     PetscCall(OnFirstRank(linear, Iterate, &outcome));
     PetscCallMPI(MPI_Bcast(&outcome, 2, MPIU_INT, 0, linear->mesh->comm));
     work->cg_iterations += outcome.iterations;
     if (!outcome.success) *success = PETSC_FALSE;
     PetscCall(EqmRowsToRoots(on->vertices, 2, on->system.solution, on->owned));
-    Collect(linear, on->owned, x + (size_t)k * linear->num_owned);
+    EqmUnknownsCollect(&linear->unknowns, linear->mesh->num_owned, on->owned, x + (size_t)k * linear->num_owned);
   }
   PetscFunctionReturn(0);
 }
