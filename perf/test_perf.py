@@ -88,11 +88,13 @@ def check_model():
 
 
 def check_time_to_energy():
-    """Runs with a target end at it or below, the reference above nothing but itself; a row for each."""
+    """A row per setting says whether the reference's energy was reached; the cascade alone goes only so far."""
     run("time_to_energy.py", "1500", "--repeat", "1")
     rows = table("time_to_energy")
-    assert [row["reached"] for row in rows] == ["True"] * 4 and len({row["settings"] for row in rows}) == 4, rows
-    assert all(float(row["energy"]) <= float(rows[0]["energy"]) and float(row["cpu_seconds"]) > 0. for row in rows), rows
+    assert len({row["settings"] for row in rows}) == len(rows) == 4, rows
+    assert all(row["reached"] == "True" for row in rows if row["settings"] != "-method cascade"), rows
+    assert all((float(row["energy"]) <= float(rows[0]["energy"])) == (row["reached"] == "True") and float(row["cpu_seconds"]) > 0.
+               for row in rows), rows
     assert rows[0]["coupled_factorizations"] == rows[3]["factorizations"] == "0" < rows[3]["set_ups"], rows
 
 
