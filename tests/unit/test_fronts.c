@@ -1,37 +1,15 @@
 /* Dense fronts between ranks: dealt to several ranks they give what they give on one, the same bits every time, and
    see that a matrix is not definite. */
 #include "support/testing.h"
-#include "domain/domain_private.h"
+#include "support/cellmatrix.h"
 #include "linalg/interface_private.h"
 #include <string.h>
 
 enum { NUM_RHS = 3 };
 
-/* Per cell diag(shift) + q q^T; `spoiled`: an unknown of whose diagonal much is taken off, -1: none. */
-typedef struct {
-  EqmMesh mesh;
-  EqmUnknowns unknowns;
-  PetscInt spoiled;
-} Model;
-
-static void ModelCell(void *context, PetscInt cell, PetscReal *matrix)
-{
-  const Model *const model = context;
-  PetscInt list[EQM_MOST_CELL_UNKNOWNS], n = 0;
-
-  for (PetscInt a = 0; a < model->mesh->cell_size; a++) {
-    const PetscInt v = model->mesh->cells[model->mesh->cell_size * cell + a];
-    for (PetscInt k = 0; k < model->unknowns.count[v]; k++) list[n++] = model->unknowns.start[v] + k;
-  }
-  for (PetscInt i = 0; i < n; i++) {
-    for (PetscInt j = 0; j < n; j++)
-      matrix[n * i + j] = PetscSinReal(1. + 3. * list[i]) * PetscSinReal(1. + 3. * list[j]) + (i == j ? .3 : 0.);
-    if (list[i] == model->spoiled) matrix[n * i + i] -= 1e3;
-  }
-}
-
 /* Factor with fronts of more than `largest` unknowns shared, and solve. */
-static PetscErrorCode Solve(Model *model, EqmOrdering ordering, PetscInt largest, EqmEstimate *estimate, PetscReal *x)
+static PetscErrorCode Solve(TestMatrix *model, EqmOrdering ordering, PetscInt largest, EqmEstimate *estimate,
+                            PetscReal *x)
 {
   const PetscInt n = model->unknowns.num_owned;
   char option[80];
@@ -44,7 +22,7 @@ static PetscErrorCode Solve(Model *model, EqmOrdering ordering, PetscInt largest
   PetscCall(TestOptionsBegin(option, &options));
   PetscCall(EqmLinearCreate(model->mesh, ordering, &model->unknowns, EQM_MATRIX_COUPLED, &linear));
   *estimate = linear->estimate;
-  PetscCall(EqmLinearFactor(linear, ModelCell, model, 1., &success));
+  PetscCall(EqmLinearFactor(linear, TestCellMatrix, model, 1., &success));
   CHECK(success == (model->spoiled < 0), "fronts beyond %d shared: the matrix is said to be %sdefinite", (int)largest,
         success ? "" : "in");
   if (success) {
@@ -72,7 +50,7 @@ static PetscErrorCode CheckAlike(PetscInt count, const PetscReal *x, const Petsc
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TestShared(Model *model, EqmOrdering ordering)
+static PetscErrorCode TestShared(TestMatrix *model, EqmOrdering ordering)
 {
   const PetscInt n = NUM_RHS * model->unknowns.num_owned;
   const PetscBool can = (PetscBool)(model->mesh->size > 1 && EqmInterfaceCanShare());
@@ -117,12 +95,14 @@ static PetscErrorCode TestOnMesh(const char *shape, PetscInt n, const char *part
   PetscCall(TestOptionsEnd(&options));
   PetscCall(EqmOrderingCreate(test.mesh, &ordering));
   PetscCall(EqmDomainCreateSquare(test.mesh, NULL, &domain));
-  Model model = {.mesh = test.mesh,
-                 .unknowns = {.num_owned = domain->num_dofs,
-                              .first = domain->dof_first,
-                              .start = domain->dof_start,
-                              .count = domain->dof_count},
-                 .spoiled = -1};
+  TestMatrix model = {.mesh = test.mesh,
+                      .unknowns = {.num_owned = domain->num_dofs,
+                                   .first = domain->dof_first,
+                                   .start = domain->dof_start,
+                                   .count = domain->dof_count},
+                      .shift = .3,
+                      .spoil = 1e3,
+                      .spoiled = -1};
   PetscCall(TestShared(&model, ordering));
   PetscCall(EqmDomainDestroy(&domain));
   PetscCall(EqmOrderingDestroy(&ordering));

@@ -1,43 +1,15 @@
 /* Assembly and linear solvers: residuals of several right-hand sides, what happens to matrices that are not definite.
  */
 #include "support/testing.h"
-#include "domain/domain_private.h"
+#include "support/cellmatrix.h"
 #include <math.h>
 #include <omp.h>
 #include <string.h>
 
 enum { MOST_RHS = 4 };
 
-/* A symmetric matrix made of cells, the same on every rank: diag(shift) + q q^T with q from the numbers of the
- * unknowns. */
-typedef struct {
-  EqmMesh mesh;
-  EqmUnknowns unknowns;
-  PetscReal shift, spoil; /* spoil: taken off the diagonal of the first unknown's cells */
-} Model;
-
-static PetscReal Pull(PetscInt unknown)
-{
-  return PetscSinReal(1. + 3. * unknown);
-}
-
-static void ModelCell(void *context, PetscInt cell, PetscReal *matrix)
-{
-  const Model *const model = context;
-  PetscInt list[EQM_MOST_CELL_UNKNOWNS], n = 0;
-
-  for (PetscInt a = 0; a < model->mesh->cell_size; a++) {
-    const PetscInt v = model->mesh->cells[model->mesh->cell_size * cell + a];
-    for (PetscInt k = 0; k < model->unknowns.count[v]; k++) list[n++] = model->unknowns.start[v] + k;
-  }
-  for (PetscInt i = 0; i < n; i++) {
-    for (PetscInt j = 0; j < n; j++) matrix[n * i + j] = Pull(list[i]) * Pull(list[j]) + (i == j ? model->shift : 0.);
-    if (list[i] == 0) matrix[n * i + i] -= model->spoil;
-  }
-}
-
 /* y = A x cell by cell, without a matrix; x and y per owned unknown. The diagonal is multiplied by `diagonal`. */
-static PetscErrorCode ModelApply(Model *model, PetscReal diagonal, const PetscReal *x, PetscReal *y)
+static PetscErrorCode ModelApply(TestMatrix *model, PetscReal diagonal, const PetscReal *x, PetscReal *y)
 {
   const EqmMesh mesh = model->mesh;
   const EqmUnknowns *const u = &model->unknowns;
@@ -60,7 +32,7 @@ static PetscErrorCode ModelApply(Model *model, PetscReal diagonal, const PetscRe
         row[n++] = u->start[v] + k - u->first;
       }
     }
-    ModelCell(model, c, matrix);
+    TestCellMatrix(model, c, matrix);
     for (PetscInt i = 0; i < n; i++) {
       for (PetscInt j = 0; j < n && row[i] >= 0 && row[i] < u->num_owned; j++)
         y[row[i]] += (i == j ? diagonal : 1.) * matrix[n * i + j] * value[j];
@@ -76,7 +48,7 @@ static PetscReal Entry(PetscInt unknown, PetscInt column)
 }
 
 /* |A x - b| <= tolerance |b|. */
-static PetscErrorCode CheckResidual(Model *model, PetscReal diagonal, const PetscReal *b, const PetscReal *x,
+static PetscErrorCode CheckResidual(TestMatrix *model, PetscReal diagonal, const PetscReal *b, const PetscReal *x,
                                     PetscReal tolerance)
 {
   const PetscInt n = model->unknowns.num_owned;
@@ -96,7 +68,7 @@ static PetscErrorCode CheckResidual(Model *model, PetscReal diagonal, const Pets
 }
 
 /* What stands for the inverse in a metric is linear, symmetric and definite: u B v = v B u, u B u > 0. */
-static PetscErrorCode CheckApply(EqmLinear linear, Model *model)
+static PetscErrorCode CheckApply(EqmLinear linear, TestMatrix *model)
 {
   const PetscInt n = model->unknowns.num_owned;
   PetscReal *b, *x, product[4] = {0., 0., 0., 0.};
@@ -116,7 +88,7 @@ static PetscErrorCode CheckApply(EqmLinear linear, Model *model)
 }
 
 /* Factor and solve. `in_place`: solutions over right-hand sides. */
-static PetscErrorCode CheckSolve(EqmLinear linear, Model *model, PetscReal diagonal, PetscInt num_rhs,
+static PetscErrorCode CheckSolve(EqmLinear linear, TestMatrix *model, PetscReal diagonal, PetscInt num_rhs,
                                  PetscBool in_place, PetscReal tolerance)
 {
   const PetscInt n = model->unknowns.num_owned;
@@ -125,7 +97,7 @@ static PetscErrorCode CheckSolve(EqmLinear linear, Model *model, PetscReal diago
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(MOST_RHS * n, &b, MOST_RHS * n, &x));
-  PetscCall(EqmLinearFactor(linear, ModelCell, model, diagonal, &success));
+  PetscCall(EqmLinearFactor(linear, TestCellMatrix, model, diagonal, &success));
   CHECK(success, "a definite matrix is refused");
   for (PetscInt k = 0; k < num_rhs; k++) {
     for (PetscInt i = 0; i < n; i++) b[k * n + i] = x[k * n + i] = Entry(model->unknowns.first + i, k);
@@ -137,13 +109,13 @@ static PetscErrorCode CheckSolve(EqmLinear linear, Model *model, PetscReal diago
 }
 
 /* A matrix that is not definite is reported as such on every rank; a good one works again after it. */
-static PetscErrorCode CheckIndefinite(EqmLinear linear, Model *model, PetscReal tolerance)
+static PetscErrorCode CheckIndefinite(EqmLinear linear, TestMatrix *model, PetscReal tolerance)
 {
   PetscBool success = PETSC_TRUE;
 
   PetscFunctionBegin;
   model->spoil = 1e3;
-  PetscCall(EqmLinearFactor(linear, ModelCell, model, 1., &success));
+  PetscCall(EqmLinearFactor(linear, TestCellMatrix, model, 1., &success));
   CHECK(!success, "an indefinite matrix passes for definite");
   model->spoil = 0.;
   PetscCall(CheckSolve(linear, model, 1., 2, PETSC_FALSE, tolerance));
@@ -151,7 +123,7 @@ static PetscErrorCode CheckIndefinite(EqmLinear linear, Model *model, PetscReal 
 }
 
 /* Multigrid cannot see it before the iteration: a true solution or an error, never numbers that solve nothing. */
-static PetscErrorCode CheckIndefiniteMultigrid(EqmLinear linear, Model *model)
+static PetscErrorCode CheckIndefiniteMultigrid(EqmLinear linear, TestMatrix *model)
 {
   const PetscInt n = model->unknowns.num_owned;
   PetscErrorCode error = 0;
@@ -162,7 +134,7 @@ static PetscErrorCode CheckIndefiniteMultigrid(EqmLinear linear, Model *model)
   PetscCall(PetscMalloc2(n, &b, n, &x));
   for (PetscInt i = 0; i < n; i++) b[i] = Entry(model->unknowns.first + i, 0);
   model->spoil = 1e3;
-  PetscCall(EqmLinearFactor(linear, ModelCell, model, 1., &success));
+  PetscCall(EqmLinearFactor(linear, TestCellMatrix, model, 1., &success));
   if (success) {
     PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
     error = EqmLinearSolve(linear, 1, b, x);
@@ -178,7 +150,7 @@ static PetscErrorCode CheckIndefiniteMultigrid(EqmLinear linear, Model *model)
 static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns, EqmMatrixUse use,
                                  const char *option)
 {
-  Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5};
+  TestMatrix model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5};
   EqmWork *work, before;
   PetscOptions options;
   EqmLinear linear;
@@ -215,7 +187,7 @@ static PetscErrorCode TestSolver(EqmMesh mesh, EqmOrdering ordering, const EqmUn
 static PetscErrorCode TestPrecision(EqmMesh mesh, EqmOrdering ordering, const EqmUnknowns *unknowns)
 {
   static const char *const precisions[] = {"-linear_precision single", "-linear_precision double"};
-  Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5};
+  TestMatrix model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5};
   PetscReal bytes[2], error[2], *b, *x;
   EqmLinear linear;
 
@@ -226,7 +198,7 @@ static PetscErrorCode TestPrecision(EqmMesh mesh, EqmOrdering ordering, const Eq
     PetscBool success;
     PetscCall(TestOptionsBegin(precisions[k], &options));
     PetscCall(EqmLinearCreate(mesh, ordering, unknowns, EQM_MATRIX_STEP, &linear));
-    PetscCall(EqmLinearFactor(linear, ModelCell, &model, 1., &success));
+    PetscCall(EqmLinearFactor(linear, TestCellMatrix, &model, 1., &success));
     CHECK(success, "a definite matrix is refused");
     bytes[k] = linear->estimate.bytes;
     for (PetscInt i = 0; i < unknowns->num_owned; i++) b[i] = x[i] = Entry(unknowns->first + i, 5);
@@ -359,7 +331,7 @@ static PetscErrorCode TestOnMesh(const char *shape, PetscInt n, const char *part
 static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, EqmMatrixUse use, int threads,
                                      PetscReal *x)
 {
-  Model model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5, .spoil = 1e3};
+  TestMatrix model = {.mesh = mesh, .unknowns = *unknowns, .shift = .5, .spoil = 1e3};
   EqmOrdering ordering;
   EqmLinear linear;
   PetscOptions options;
@@ -370,10 +342,10 @@ static PetscErrorCode SolveOnThreads(EqmMesh mesh, const EqmUnknowns *unknowns, 
   PetscCall(TestOptionsBegin("-linear_solver multifrontal -linear_precision single", &options));
   PetscCall(EqmOrderingCreate(mesh, &ordering));
   PetscCall(EqmLinearCreate(mesh, ordering, unknowns, use, &linear));
-  PetscCall(EqmLinearFactor(linear, ModelCell, &model, 1., &success));
+  PetscCall(EqmLinearFactor(linear, TestCellMatrix, &model, 1., &success));
   CHECK(!success, "an indefinite matrix passes for definite on %d threads", threads);
   model.spoil = 0.;
-  PetscCall(EqmLinearFactor(linear, ModelCell, &model, 1., &success));
+  PetscCall(EqmLinearFactor(linear, TestCellMatrix, &model, 1., &success));
   CHECK(success, "a definite matrix is refused on %d threads", threads);
   for (PetscInt i = 0; i < 5 * unknowns->num_owned; i++) x[i] = Entry(i, 3);
   PetscCall(EqmLinearSolve(linear, 5, x, x));
@@ -403,7 +375,7 @@ static PetscErrorCode TestThreads(const char *shape, PetscInt n, EqmMatrixUse us
   EqmUnknowns scalar = {.num_owned = test.mesh->num_owned, .start = test.mesh->global, .count = ones};
   PetscCall(PetscMalloc3(size, &x[0], size, &x[1], size, &b));
   PetscCall(SolveOnThreads(test.mesh, &scalar, use, 1, x[0]));
-  Model model = {.mesh = test.mesh, .unknowns = scalar, .shift = .5};
+  TestMatrix model = {.mesh = test.mesh, .unknowns = scalar, .shift = .5};
   for (PetscInt i = 0; i < size; i++) b[i] = Entry(i, 3);
   for (PetscInt k = 0; k < 5; k++)
     PetscCall(CheckResidual(&model, 1., b + k * scalar.num_owned, x[0] + k * scalar.num_owned,
