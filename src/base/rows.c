@@ -1,6 +1,6 @@
 #include "base/rows.h"
 
-static PetscErrorCode ToLeaves(PetscSF sf, MPI_Datatype unit, PetscInt width, const void *roots, void *leaves)
+PetscErrorCode EqmRowsOfToLeaves(PetscSF sf, MPI_Datatype unit, PetscInt width, const void *roots, void *leaves)
 {
   MPI_Datatype row;
 
@@ -29,7 +29,7 @@ static PetscErrorCode ToRoots(PetscSF sf, MPI_Datatype unit, PetscInt width, con
 PetscErrorCode EqmRowsToLeaves(PetscSF sf, PetscInt width, const PetscReal *roots, PetscReal *leaves)
 {
   PetscFunctionBegin;
-  PetscCall(ToLeaves(sf, MPIU_REAL, width, roots, leaves));
+  PetscCall(EqmRowsOfToLeaves(sf, MPIU_REAL, width, roots, leaves));
   PetscFunctionReturn(0);
 }
 
@@ -60,7 +60,7 @@ PetscErrorCode EqmFetchRows(MPI_Comm comm, PetscInt count, PetscInt num, const P
 
   PetscFunctionBegin;
   PetscCall(EqmRowsCreateSF(comm, count, num, numbers, &sf));
-  PetscCall(ToLeaves(sf, unit, width, slab, rows));
+  PetscCall(EqmRowsOfToLeaves(sf, unit, width, slab, rows));
   PetscCall(PetscSFDestroy(&sf));
   PetscFunctionReturn(0);
 }

@@ -20,6 +20,9 @@ PETSC_INTERN PetscErrorCode EqmRowsCreateSF(MPI_Comm comm, PetscInt count, Petsc
                                             PetscSF *sf);
 /* Rows of `width` reals along any star forest; roots without leaves keep what they hold. Collective. */
 PETSC_INTERN PetscErrorCode EqmRowsToLeaves(PetscSF sf, PetscInt width, const PetscReal *roots, PetscReal *leaves);
+/* The same for rows of any kind. Collective. */
+PETSC_INTERN PetscErrorCode EqmRowsOfToLeaves(PetscSF sf, MPI_Datatype unit, PetscInt width, const void *roots,
+                                              void *leaves);
 PETSC_INTERN PetscErrorCode EqmRowsToRoots(PetscSF sf, PetscInt width, const PetscReal *leaves, PetscReal *roots);
 
 #endif

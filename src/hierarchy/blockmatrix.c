@@ -122,7 +122,7 @@ PetscErrorCode EqmBlockFactorDestroy(EqmBlockFactor *factor)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmBlockFactorSolve(const EqmBlockFactor *factor, PetscReal *b, PetscReal *x, PetscBool *success)
+PetscErrorCode EqmBlockFactorSolve(const EqmBlockFactor *factor, const PetscReal *b, PetscReal *x, PetscBool *success)
 {
   KSPConvergedReason reason;
   PetscInt n;

@@ -39,7 +39,7 @@ PETSC_INTERN PetscErrorCode EqmBlockFactorCreate(const EqmBlockMatrix *pattern, 
 PETSC_INTERN PetscErrorCode EqmBlockFactorDestroy(EqmBlockFactor *factor);
 PETSC_INTERN PetscErrorCode EqmBlockFactorFill(const EqmBlockMatrix *matrix, EqmBlockFactor *factor,
                                                PetscBool *success);
-PETSC_INTERN PetscErrorCode EqmBlockFactorSolve(const EqmBlockFactor *factor, PetscReal *b, PetscReal *x,
+PETSC_INTERN PetscErrorCode EqmBlockFactorSolve(const EqmBlockFactor *factor, const PetscReal *b, PetscReal *x,
                                                 PetscBool *success);
 
 /* c += a b, and c += a^T b. */

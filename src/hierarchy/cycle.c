@@ -1,4 +1,5 @@
 #include "hierarchy/cycle.h"
+#include "hierarchy/conjugate.h"
 
 typedef struct {
   const EqmBlockMatrix *matrix;
@@ -29,7 +30,7 @@ PetscErrorCode EqmCycleCreate(const EqmBlockMatrix *finest, PetscInt num_prolong
     level->matrix = k == 0 ? finest : &level->own;
     level->from_below = k < last ? &p[k] : NULL;
     if (k > 0) PetscCall(EqmProlongationGalerkinPattern(&p[k - 1], cycle->level[k - 1].matrix, &level->own));
-    if (k < last) PetscCall(EqmSweepsCreate(level->matrix, &level->sweeps));
+    if (k < last) PetscCall(EqmSweepsCreateEven(level->matrix, &level->sweeps));
     PetscCall(PetscMalloc1(2 * level->matrix->num_rows, &level->b));
     PetscCall(PetscMalloc1(2 * level->matrix->num_rows, &level->x));
     PetscCall(PetscMalloc1(2 * level->matrix->num_rows, &level->r));
@@ -78,7 +79,7 @@ PetscErrorCode EqmCycleDestroy(EqmCycle *out)
 }
 
 /* x = B b on a level and those below. */
-static PetscErrorCode Descend(EqmCycle cycle, PetscInt k, PetscReal *b, PetscReal *x)
+static PetscErrorCode Descend(EqmCycle cycle, PetscInt k, const PetscReal *b, PetscReal *x)
 {
   Level *const level = &cycle->level[k];
 
@@ -89,6 +90,7 @@ static PetscErrorCode Descend(EqmCycle cycle, PetscInt k, PetscReal *b, PetscRea
     PetscFunctionReturn(0);
   }
   EqmSweepForward(&level->sweeps, b, x, level->r);
+  EqmSweepResidual(&level->sweeps, x, level->r);
   EqmProlongationRestrict(level->from_below, level->r, level[1].b);
   PetscCall(Descend(cycle, k + 1, level[1].b, level[1].x));
   EqmProlongationAdd(level->from_below, level[1].x, x);
@@ -96,70 +98,33 @@ static PetscErrorCode Descend(EqmCycle cycle, PetscInt k, PetscReal *b, PetscRea
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MultiplyShell(Mat shell, Vec x, Vec y)
+PetscErrorCode EqmCycleApply(EqmCycle cycle, const PetscReal *b, PetscReal *x)
 {
-  const EqmBlockMatrix *matrix;
-  const PetscScalar *from;
-  PetscScalar *to;
-
   PetscFunctionBegin;
-  PetscCall(MatShellGetContext(shell, &matrix));
-  PetscCall(VecGetArrayRead(x, &from));
-  PetscCall(VecGetArrayWrite(y, &to));
-  EqmBlockMatrixMultiply(matrix, from, to);
-  PetscCall(VecRestoreArrayWrite(y, &to));
-  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscCall(Descend(cycle, 0, b, x));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ApplyShell(PC shell, Vec b, Vec x)
+static PetscErrorCode Precondition(void *context, const PetscReal *b, PetscReal *x)
 {
-  EqmCycle cycle;
-  PetscScalar *from, *to;
-
   PetscFunctionBegin;
-  PetscCall(PCShellGetContext(shell, &cycle));
-  PetscCall(VecGetArray(b, &from));
-  PetscCall(VecGetArrayWrite(x, &to));
-  PetscCall(Descend(cycle, 0, from, to));
-  PetscCall(VecRestoreArrayWrite(x, &to));
-  PetscCall(VecRestoreArray(b, &from));
+  PetscCall(EqmCycleApply(context, b, x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Multiply(void *context, const PetscReal *x, PetscReal *y)
+{
+  PetscFunctionBegin;
+  EqmBlockMatrixMultiply(((EqmCycle)context)->level[0].matrix, x, y);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmCycleSolve(EqmCycle cycle, PetscReal *b, PetscReal *x, PetscReal tolerance, PetscInt *iterations,
                              PetscBool *success)
 {
-  enum { MOST_ITERATIONS = 60 };
-  const PetscInt n = 2 * cycle->level[0].matrix->num_rows;
-  KSPConvergedReason reason;
-  Vec right, solution;
-  Mat shell;
-  KSP ksp;
-  PC pc;
-
   PetscFunctionBegin;
-  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, (void *)cycle->level[0].matrix, &shell));
-  PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))MultiplyShell));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, b, &right));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, x, &solution));
-  PetscCall(KSPCreate(PETSC_COMM_SELF, &ksp));
-  PetscCall(KSPSetType(ksp, KSPCG));
-  PetscCall(KSPSetNormType(ksp, KSP_NORM_NATURAL));
-  PetscCall(KSPSetTolerances(ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, MOST_ITERATIONS));
-  PetscCall(KSPSetOperators(ksp, shell, shell));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetContext(pc, cycle));
-  PetscCall(PCShellSetApply(pc, ApplyShell));
-  PetscCall(KSPSolve(ksp, right, solution));
-  PetscCall(KSPGetConvergedReason(ksp, &reason));
-  PetscCall(KSPGetIterationNumber(ksp, iterations));
-  *success = (PetscBool)(reason > 0 || reason == KSP_DIVERGED_ITS);
-  PetscCall(KSPDestroy(&ksp));
-  PetscCall(MatDestroy(&shell));
-  PetscCall(VecDestroy(&right));
-  PetscCall(VecDestroy(&solution));
+  PetscCall(EqmConjugateGradients(PETSC_COMM_SELF, 2 * cycle->level[0].matrix->num_rows, Multiply, Precondition, cycle,
+                                  b, x, tolerance, iterations, success));
   PetscFunctionReturn(0);
 }
 

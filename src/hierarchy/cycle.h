@@ -16,9 +16,9 @@ PETSC_INTERN PetscErrorCode EqmCycleCreate(const EqmBlockMatrix *finest, PetscIn
    Not collective. */
 PETSC_INTERN PetscErrorCode EqmCycleFill(EqmCycle cycle, PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmCycleDestroy(EqmCycle *cycle);
-/* Conjugate gradients with one cycle as preconditioner, until the error is down to `tolerance` of what it was (energy
-   norm), or for so many iterations that more would not pay: the solution is then as good as they made it. `success` is
-   false where the matrix turns out not to be definite. Not collective. */
+/* One cycle from zero. Not collective. */
+PETSC_INTERN PetscErrorCode EqmCycleApply(EqmCycle cycle, const PetscReal *b, PetscReal *x);
+/* EqmConjugateGradients with one cycle as preconditioner. Not collective. */
 PETSC_INTERN PetscErrorCode EqmCycleSolve(EqmCycle cycle, PetscReal *b, PetscReal *x, PetscReal tolerance,
                                           PetscInt *iterations, PetscBool *success);
 

@@ -51,15 +51,15 @@ static PetscInt RowPattern(const EqmProlongation *p, const EqmBlockMatrix *fine,
 
 /* A thread's table of coarse columns, none of which is met or has a place yet. NULL, and `bad`, where there is no
    memory. */
-static PetscInt *MakeTable(PetscInt num_coarse, int *bad)
+static PetscInt *MakeTable(PetscInt num_columns, int *bad)
 {
-  PetscInt *const table = malloc((size_t)num_coarse * sizeof(PetscInt));
+  PetscInt *const table = malloc((size_t)num_columns * sizeof(PetscInt));
 
   if (!table) {
 #pragma omp atomic write
     *bad = 1;
   }
-  for (PetscInt j = 0; table && j < num_coarse; j++) table[j] = -1;
+  for (PetscInt j = 0; table && j < num_columns; j++) table[j] = -1;
   return table;
 }
 
@@ -68,7 +68,7 @@ static void CountRows(const EqmProlongation *p, const EqmBlockMatrix *fine, EqmB
 {
 #pragma omp parallel if (p->num_fine > LEAST_ROWS)
   {
-    PetscInt *const met = MakeTable(p->num_coarse, bad);
+    PetscInt *const met = MakeTable(p->num_columns, bad);
 #pragma omp for schedule(static)
     for (PetscInt j = 0; j < p->num_coarse; j++) {
       if (met) coarse->start[j + 1] = RowPattern(p, fine, j, met, NULL);
@@ -95,7 +95,7 @@ static void FindColumns(const EqmProlongation *p, const EqmBlockMatrix *fine, Eq
 {
 #pragma omp parallel if (p->num_fine > LEAST_ROWS)
   {
-    PetscInt *const met = MakeTable(p->num_coarse, bad);
+    PetscInt *const met = MakeTable(p->num_columns, bad);
 #pragma omp for schedule(static)
     for (PetscInt j = 0; j < p->num_coarse; j++) {
       PetscInt *const column = coarse->column + coarse->start[j];
@@ -120,7 +120,7 @@ static PetscErrorCode FindMirrors(EqmBlockMatrix *coarse)
   PetscCall(PetscMalloc1(coarse->num_rows, &next));
   PetscCall(PetscArraycpy(next, coarse->start, coarse->num_rows));
   for (PetscInt j = 0; j < coarse->num_rows; j++) {
-    for (PetscInt q = coarse->diagonal[j] + 1; q < coarse->start[j + 1]; q++)
+    for (PetscInt q = coarse->diagonal[j] + 1; q < coarse->start[j + 1] && coarse->column[q] < coarse->num_rows; q++)
       coarse->mirror[next[coarse->column[q]]++] = q;
   }
   PetscCall(PetscFree(next));
@@ -201,7 +201,7 @@ PetscErrorCode EqmProlongationGalerkinFill(const EqmProlongation *p, const EqmBl
   PetscFunctionBegin;
 #pragma omp parallel if (p->num_fine > LEAST_ROWS)
   {
-    PetscInt *const place = MakeTable(p->num_coarse, &bad);
+    PetscInt *const place = MakeTable(p->num_columns, &bad);
 #pragma omp for schedule(static)
     for (PetscInt j = 0; j < p->num_coarse; j++) {
       if (!place) continue;

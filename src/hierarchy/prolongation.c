@@ -2,7 +2,7 @@
 #include "hierarchy/prolongation.h"
 #include <string.h>
 
-enum { WIDTH = EQM_PROLONGATION_WIDTH, MOST_CANDIDATES = 10, MOST_SEEN = WIDTH * EQM_MOST_RECORD };
+enum { WIDTH = EQM_PROLONGATION_WIDTH, MOST_CANDIDATES = 10, MOST_SEEN = WIDTH * EQM_MOST_RECORD, LEAST_ROWS = 4096 };
 
 typedef EqmProlongationRow Row;
 
@@ -171,7 +171,7 @@ static void SetRow(const EqmLevelMap *map, PetscInt v, const Row *row, const Pet
   }
 }
 
-static unsigned char IsPlain(const EqmBlock *entry)
+unsigned char EqmProlongationIsPlain(const EqmBlock *entry)
 {
   PetscBool plain = PETSC_TRUE;
 
@@ -200,6 +200,25 @@ static PetscErrorCode Transpose(EqmProlongation *p)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmProlongationSet(const EqmLevelMap *map, const EqmProlongationRow *rows, const PetscInt *number,
+                                  PetscInt num_fine, PetscInt num_rows, PetscInt num_coarse, EqmProlongation *p)
+{
+  PetscFunctionBegin;
+  p->num_fine = num_fine;
+  p->num_rows = num_rows;
+  p->num_coarse = p->num_columns = num_coarse;
+  PetscCall(PetscMalloc1(WIDTH * num_rows, &p->column));
+  PetscCall(PetscMalloc1(WIDTH * num_rows, &p->entry));
+  PetscCall(PetscMalloc1(num_rows, &p->plain));
+#pragma omp parallel for schedule(static) if (num_fine > LEAST_ROWS)
+  for (PetscInt v = 0; v < num_fine; v++) {
+    SetRow(map, v, &rows[v], number, p->column + WIDTH * v, p->entry + WIDTH * v);
+    p->plain[v] = EqmProlongationIsPlain(p->entry + WIDTH * v);
+  }
+  PetscCall(Transpose(p));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap *coarser, EqmProlongation *p)
 {
   const PetscInt n = finer->level->num_vertices, m = coarser->level->num_vertices;
@@ -207,20 +226,11 @@ PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap
   Row *rows;
 
   PetscFunctionBegin;
-  p->num_fine = n;
-  p->num_coarse = m;
   PetscCall(PetscMalloc2(n, &number, n, &rows));
-  PetscCall(PetscMalloc1(WIDTH * n, &p->column));
-  PetscCall(PetscMalloc1(WIDTH * n, &p->entry));
-  PetscCall(PetscMalloc1(n, &p->plain));
   for (PetscInt c = 0; c < m; c++) number[coarser->level->finer[c]] = c;
   PetscCall(MakeRows(finer, coarser, rows));
-  for (PetscInt v = 0; v < n; v++) {
-    SetRow(finer, v, &rows[v], number, p->column + WIDTH * v, p->entry + WIDTH * v);
-    p->plain[v] = IsPlain(p->entry + WIDTH * v);
-  }
+  PetscCall(EqmProlongationSet(finer, rows, number, n, n, m, p));
   PetscCall(PetscFree2(number, rows));
-  PetscCall(Transpose(p));
   PetscFunctionReturn(0);
 }
 

@@ -11,10 +11,11 @@ enum { EQM_PROLONGATION_WIDTH = 3 };
    is their mean with positive weights: affine motions of the plane and rotations of the sphere come out exact. */
 typedef struct {
   PetscInt num_fine, num_coarse;
-  PetscInt *column;       /* EQM_PROLONGATION_WIDTH per fine vertex: coarse vertices; -1: none */
-  EqmBlock *entry;        /* for each of these */
-  unsigned char *plain;   /* per fine vertex: its blocks are multiples of one */
-  PetscInt *start, *from; /* per coarse vertex: which of these are its */
+  PetscInt num_rows, num_columns; /* the same, with those of other ranks that products have to know */
+  PetscInt *column;               /* EQM_PROLONGATION_WIDTH per row: coarse vertices; -1: none */
+  EqmBlock *entry;                /* for each of these */
+  unsigned char *plain;           /* per row: its blocks are multiples of one */
+  PetscInt *start, *from;         /* per coarse vertex: which of these are its */
 } EqmProlongation;
 
 /* A fine vertex as the mean of coarse ones, which are given by their numbers on the finer level. */
@@ -26,6 +27,13 @@ typedef struct {
    theirs; a coarse vertex's is itself. Not collective. */
 PETSC_INTERN void EqmProlongationRows(const EqmLevelMap *map, PetscInt begin, PetscInt end, EqmProlongationRow *rows);
 
+/* The prolongation with these rows, of which there are num_fine; `number`: of each coarse vertex among the num_coarse
+   ones; room for num_rows. Not collective. */
+PETSC_INTERN PetscErrorCode EqmProlongationSet(const EqmLevelMap *map, const EqmProlongationRow *rows,
+                                               const PetscInt *number, PetscInt num_fine, PetscInt num_rows,
+                                               PetscInt num_coarse, EqmProlongation *prolongation);
+/* Whether blocks of a row are multiples of one. Not collective. */
+PETSC_INTERN unsigned char EqmProlongationIsPlain(const EqmBlock *entry);
 /* The places of the coarser map must be those of the finer one. Not collective. */
 PETSC_INTERN PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap *coarser,
                                                   EqmProlongation *prolongation);
@@ -34,8 +42,8 @@ PETSC_INTERN PetscErrorCode EqmProlongationDestroy(EqmProlongation *prolongation
 PETSC_INTERN void EqmProlongationAdd(const EqmProlongation *prolongation, const PetscReal *coarse, PetscReal *fine);
 PETSC_INTERN void EqmProlongationRestrict(const EqmProlongation *prolongation, const PetscReal *fine,
                                           PetscReal *coarse);
-/* P^T A P: its pattern, which that of A tells, and its entries for the present ones of A, symmetric to the last bit.
-   Not collective. */
+/* P^T A P: its pattern, which that of A tells, and its entries for the present ones of A, symmetric to the last bit but
+   for other ranks' columns. Not collective. */
 PETSC_INTERN PetscErrorCode EqmProlongationGalerkinPattern(const EqmProlongation *prolongation,
                                                            const EqmBlockMatrix *fine, EqmBlockMatrix *coarse);
 PETSC_INTERN PetscErrorCode EqmProlongationGalerkinFill(const EqmProlongation *prolongation, const EqmBlockMatrix *fine,

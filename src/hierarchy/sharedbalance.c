@@ -21,7 +21,7 @@ PetscErrorCode EqmSharedBalance(EqmShared shared, PetscInt k, EqmCascadeTarget t
 {
   EqmSharedLevel *const level = &shared->level[k];
   PetscReal damping = options->damping;
-  EqmSharedProlongations prolongations;
+  EqmSharedCycle cycle = NULL;
   EqmLevelSystem system;
   EqmLevelValue value;
 
@@ -37,15 +37,16 @@ PetscErrorCode EqmSharedBalance(EqmShared shared, PetscInt k, EqmCascadeTarget t
     PetscCall(EqmBalanceAssemble(map, damping, value.residual, &system, &success));
     PetscCall(OnAll(level->comm, &success));
     if (success) {
-      PetscCall(EqmSharedProlongationsCreate(shared, k, target, map, direct, &prolongations));
-      PetscCall(EqmSharedSolve(level, &system, &prolongations, options->tolerance, &count, &success));
-      PetscCall(EqmSharedProlongationsDestroy(&prolongations));
+      if (!cycle) PetscCall(EqmSharedCycleCreate(shared, k, target, map, direct, &system, &cycle));
+      PetscCall(EqmSharedCycleFill(cycle, &success));
     }
+    if (success) PetscCall(EqmSharedCycleSolve(cycle, options->tolerance, &count, &success));
     if (success) PetscCall(EqmBalanceSearch(map, system.solution, Evaluate, level, &value, &t));
     *iterations += count;
     damping = EqmBalanceNextDamping(damping, t);
     if (t >= .99 && before - value.objective < options->gain * before) break;
   }
+  PetscCall(EqmSharedCycleDestroy(&cycle));
   PetscCall(EqmLevelSystemDestroy(&system));
   PetscFunctionReturn(0);
 }

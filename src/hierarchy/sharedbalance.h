@@ -2,7 +2,7 @@
 #define EQM_SHAREDBALANCE_H
 
 #include "hierarchy/balance.h"
-#include "hierarchy/sharedsolve.h"
+#include "hierarchy/sharedcycle.h"
 
 /* As EqmBalanceLevel, for a map of shared level k, with multigrid on all levels below it down to `direct` vertices;
    `iterations` of all steps together. Collective. */

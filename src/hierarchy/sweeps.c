@@ -1,46 +1,70 @@
 #include "hierarchy/sweeps.h"
 
-/* Fewer rows are not worth the threads; a piece has so many. */
-enum { LEAST_ROWS = 4096, ROWS_OF_PIECE = 8192 };
+/* Fewer rows are not worth the threads. */
+enum { LEAST_ROWS = 4096 };
 
-/* Which part of row i column j belongs to: 0, 1 or 2; the diagonal to none. */
-static inline int PartOf(PetscInt i, PetscInt j)
+/* Which part of row i column j belongs to: 0, 1 or 2; the diagonal to none. The row's piece is begin .. end - 1. */
+static inline int PartOf(PetscInt i, PetscInt j, PetscInt begin, PetscInt end)
 {
   if (i == j) return -1;
-  if (i / ROWS_OF_PIECE != j / ROWS_OF_PIECE) return 2;
+  if (j < begin || j >= end) return 2;
   return j > i;
 }
 
-PetscErrorCode EqmSweepsCreate(const EqmBlockMatrix *a, EqmSweeps *s)
+static void SortRow(const EqmBlockMatrix *a, PetscInt i, PetscInt begin, PetscInt end, EqmSweeps *s)
 {
-  const PetscInt n = a->num_rows;
+  PetscInt at = a->start[i] - i;
 
-  PetscFunctionBegin;
-  *s = (EqmSweeps){.num_rows = n};
-  PetscCall(PetscMalloc1(3 * n + 1, &s->part));
-  PetscCall(PetscMalloc1(a->start[n] - n, &s->column));
-  PetscCall(PetscMalloc1(a->start[n] - n, &s->place));
-  PetscCall(PetscMalloc1(a->start[n] - n, &s->entry));
-  PetscCall(PetscMalloc1(n, &s->diagonal));
-  PetscCall(PetscMalloc1(n, &s->inverse));
-  s->part[0] = 0;
-  for (PetscInt i = 0; i < n; i++) {
-    PetscInt at = s->part[3 * i];
-    for (int part = 0; part < 3; part++) {
-      for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++) {
-        if (PartOf(i, a->column[q]) != part) continue;
-        s->column[at] = a->column[q];
-        s->place[at++] = q;
-      }
-      s->part[3 * i + part + 1] = at;
+  for (int part = 0; part < 3; part++) {
+    s->part[3 * i + part] = at;
+    for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++) {
+      if (PartOf(i, a->column[q], begin, end) != part) continue;
+      s->column[at] = a->column[q];
+      s->place[at++] = q;
     }
   }
+}
+
+PetscErrorCode EqmSweepsCreate(const EqmBlockMatrix *a, PetscInt num_pieces, const PetscInt *piece_start, EqmSweeps *s)
+{
+  const PetscInt n = a->num_rows, length = a->start[n] - n;
+
+  PetscFunctionBegin;
+  *s = (EqmSweeps){.num_rows = n, .num_pieces = num_pieces};
+  PetscCall(PetscMalloc1(num_pieces + 1, &s->piece_start));
+  PetscCall(PetscArraycpy(s->piece_start, piece_start, num_pieces + 1));
+  PetscCall(PetscMalloc1(3 * n + 1, &s->part));
+  PetscCall(PetscMalloc1(length, &s->column));
+  PetscCall(PetscMalloc1(length, &s->place));
+  PetscCall(PetscMalloc1(length, &s->entry));
+  PetscCall(PetscMalloc1(n, &s->diagonal));
+  PetscCall(PetscMalloc1(n, &s->inverse));
+#pragma omp parallel for schedule(dynamic) if (n > LEAST_ROWS)
+  for (PetscInt k = 0; k < num_pieces; k++) {
+    for (PetscInt i = piece_start[k]; i < piece_start[k + 1]; i++) SortRow(a, i, piece_start[k], piece_start[k + 1], s);
+  }
+  s->part[3 * n] = length;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSweepsCreateEven(const EqmBlockMatrix *a, EqmSweeps *s)
+{
+  enum { ROWS_OF_PIECE = 8192 };
+  const PetscInt count = (a->num_rows + ROWS_OF_PIECE - 1) / ROWS_OF_PIECE;
+  PetscInt *start;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(count + 1, &start));
+  for (PetscInt k = 0; k <= count; k++) start[k] = PetscMin(k * ROWS_OF_PIECE, a->num_rows);
+  PetscCall(EqmSweepsCreate(a, count, start, s));
+  PetscCall(PetscFree(start));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmSweepsDestroy(EqmSweeps *s)
 {
   PetscFunctionBegin;
+  PetscCall(PetscFree(s->piece_start));
   PetscCall(PetscFree(s->part));
   PetscCall(PetscFree(s->column));
   PetscCall(PetscFree(s->place));
@@ -92,11 +116,9 @@ static inline void SolveRow(const EqmSweeps *s, PetscInt i, const PetscReal righ
 
 void EqmSweepForward(const EqmSweeps *s, const PetscReal *b, PetscReal *x, PetscReal *r)
 {
-  const PetscInt n = s->num_rows;
-
-#pragma omp parallel for schedule(dynamic) if (n > LEAST_ROWS)
-  for (PetscInt begin = 0; begin < n; begin += ROWS_OF_PIECE) {
-    for (PetscInt i = begin; i < PetscMin(begin + ROWS_OF_PIECE, n); i++) {
+#pragma omp parallel for schedule(dynamic) if (s->num_rows > LEAST_ROWS)
+  for (PetscInt k = 0; k < s->num_pieces; k++) {
+    for (PetscInt i = s->piece_start[k]; i < s->piece_start[k + 1]; i++) {
       PetscReal right[2] = {b[2 * i], b[2 * i + 1]};
       Subtract(s, s->part[3 * i], s->part[3 * i + 1], x, right);
       SolveRow(s, i, right, x + 2 * i);
@@ -104,8 +126,12 @@ void EqmSweepForward(const EqmSweeps *s, const PetscReal *b, PetscReal *x, Petsc
       r[2 * i + 1] = right[1];
     }
   }
-#pragma omp parallel for schedule(static) if (n > LEAST_ROWS)
-  for (PetscInt i = 0; i < n; i++) { /* r has what the sweep left for the diagonal and what comes behind it */
+}
+
+void EqmSweepResidual(const EqmSweeps *s, const PetscReal *x, PetscReal *r)
+{
+#pragma omp parallel for schedule(static) if (s->num_rows > LEAST_ROWS)
+  for (PetscInt i = 0; i < s->num_rows; i++) {
     const float *const d = s->diagonal[i].e;
     r[2 * i] -= (PetscReal)d[0] * x[2 * i] + (PetscReal)d[1] * x[2 * i + 1];
     r[2 * i + 1] -= (PetscReal)d[2] * x[2 * i] + (PetscReal)d[3] * x[2 * i + 1];
@@ -125,8 +151,8 @@ void EqmSweepBackward(const EqmSweeps *s, const PetscReal *b, PetscReal *x, Pets
     Subtract(s, s->part[3 * i], s->part[3 * i + 3], x, r + 2 * i);
   }
 #pragma omp parallel for schedule(dynamic) if (n > LEAST_ROWS)
-  for (PetscInt begin = 0; begin < n; begin += ROWS_OF_PIECE) {
-    for (PetscInt i = PetscMin(begin + ROWS_OF_PIECE, n) - 1; i >= begin; i--) {
+  for (PetscInt k = 0; k < s->num_pieces; k++) {
+    for (PetscInt i = s->piece_start[k + 1] - 1; i >= s->piece_start[k]; i--) {
       PetscReal right[2] = {r[2 * i], r[2 * i + 1]};
       Subtract(s, s->part[3 * i + 1], s->part[3 * i + 2], r, right);
       SolveRow(s, i, right, r + 2 * i);
