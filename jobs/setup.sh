@@ -12,7 +12,8 @@ packages=(gcc libc6-dev make cmake pkg-config python3 python3-numpy python3-h5py
 list_only=no
 for argument in "$@"; do
   case $argument in
-    --tests) packages+=(git doxygen groff-base valgrind slurm-wlm munge jube environment-modules python3-matplotlib python3-meshio) ;;
+    --tests) packages+=(git doxygen groff-base valgrind slurm-wlm munge jube environment-modules python3-matplotlib python3-meshio
+                       clang-14 libclang-rt-14-dev libomp-14-dev) ;;
     --list) list_only=yes ;;
     *) echo "usage: jobs/setup.sh [--tests] [--list]" >&2; exit 2 ;;
   esac

@@ -15,7 +15,7 @@ if [ "$(id -u)" -eq 0 ]; then
 fi
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 
-cmake -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DEQUIMAP_WERROR=ON -DEQUIMAP_TESTS=ON
+cmake -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DEQUIMAP_WERROR=ON -DEQUIMAP_TESTS=ON -DEQUIMAP_SANITIZE=ON
 cmake --build "$build" -j "$cores"
 [ $# -gt 0 ] || set -- -LE 'nightly|perf'
 exec ctest --test-dir "$build" --output-on-failure -j "$cores" "$@"

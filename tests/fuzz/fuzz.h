@@ -1,27 +1,28 @@
-/* What the fuzz targets share: PETSc, begun once, that returns errors and prints nothing. */
+/* The targets of the fuzzer, one per reader: each takes bytes as the content of a file. */
 #ifndef EQM_FUZZ_H
 #define EQM_FUZZ_H
 
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <equimap/soup.h>
-#include "base/fatal.h"
+#include <petscsys.h>
 
-int LLVMFuzzerInitialize(int *argc, char ***argv);
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
+/* A target; `name` is that of the reader, for formats their suffix. */
+typedef void (*EqmFuzzTarget)(const char *name, const uint8_t *bytes, size_t length);
 
-/* The fuzzer's own options stay with it. */
-int LLVMFuzzerInitialize(int *argc, char ***argv)
-{
-  static char *none[] = {"fuzz", NULL};
-  int one = 1;
-  char **arguments = none;
+PETSC_INTERN void EqmFuzzParser(const char *name, const uint8_t *bytes, size_t length);
+PETSC_INTERN void EqmFuzzPart(const char *name, const uint8_t *bytes, size_t length);
+PETSC_INTERN void EqmFuzzPoints(const char *name, const uint8_t *bytes, size_t length);
+PETSC_INTERN void EqmFuzzHdf5(const char *name, const uint8_t *bytes, size_t length);
+PETSC_INTERN void EqmFuzzXdmf(const char *name, const uint8_t *bytes, size_t length);
+PETSC_INTERN void EqmFuzzDensity(const char *name, const uint8_t *bytes, size_t length);
+PETSC_INTERN void EqmFuzzTable(const char *name, const uint8_t *bytes, size_t length);
+PETSC_INTERN void EqmFuzzOptions(const char *name, const uint8_t *bytes, size_t length);
 
-  if (EqmInitialize(&one, &arguments) || PetscPushErrorHandler(PetscReturnErrorHandler, NULL)) abort();
-  EqmForgetEnds(); /* the fuzzer ends the program itself */
-  return 0;
-}
+/* Where the file `name` of a folder for this process, below TMPDIR, is. The text is constant until the next call. */
+PETSC_INTERN const char *EqmFuzzFolder(const char *name);
+/* A file of that name in the folder, the same one in memory for all names, has these bytes. */
+PETSC_INTERN const char *EqmFuzzFile(const char *name, const uint8_t *bytes, size_t length);
 
 /* End the program, which libFuzzer reports with the input, if a claim does not hold. */
 #define CLAIM(condition)                                                                                               \

@@ -1,6 +1,6 @@
 /* Files of options, in PETSc's form and as YAML: they are inserted or refused, and so are the values that they give. */
-#define _GNU_SOURCE
-#include "fuzz_memory.h"
+#include "fuzz.h"
+#include <equimap/base.h>
 #include "app/catalogue.h"
 #include "app/optionsfile.h"
 
@@ -38,9 +38,8 @@ static void Try(const char *file)
   CLAIM(!PetscOptionsPop() && !PetscOptionsDestroy(&options));
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length)
+void EqmFuzzOptions(const char *name, const uint8_t *bytes, size_t length)
 {
-  Try(FileOfBytes("options", bytes, length));
-  Try(FileOfBytes("options.yaml", bytes, length));
-  return 0;
+  Try(EqmFuzzFile("options", bytes, length));
+  Try(EqmFuzzFile("options.yaml", bytes, length));
 }

@@ -23,6 +23,34 @@ static void SaveTexts(const char *folder, const char *name, int count, const cha
   for (int i = 0; i < count; ++i) Save(folder, name, i, text[i], strlen(text[i]));
 }
 
+/* For each reader of the sample; formats that share a parser share a reader. */
+static void SaveSample(const char *folder, const Sample *sample, int number)
+{
+  static const char *const reader[][2] = {{"tetgen", "node"}, {"vtp", "vtu"}, {"obj", "obj_part"}};
+
+  Save(folder, sample->suffix, number, sample->bytes, sample->length);
+  for (int k = 0; k < 3; ++k) {
+    if (!strcmp(sample->suffix, reader[k][0])) Save(folder, reader[k][1], number, sample->bytes, sample->length);
+  }
+}
+
+/* The writer's own, a surface and a solid. */
+static void SaveHdf5(const char *folder)
+{
+  static const char *const shapes[] = {"hills", "ball"};
+  char name[PETSC_MAX_PATH_LEN];
+
+  snprintf(name, sizeof(name), "%s/hdf5", folder);
+  (void)mkdir(name, 0777);
+  for (int k = 0; k < 2; ++k) {
+    EqmSoup soup;
+
+    snprintf(name, sizeof(name), "%s/hdf5/%s.h5", folder, shapes[k]);
+    if (EqmSoupGenerate(PETSC_COMM_SELF, shapes[k], 12, 0, &soup) || EqmSoupWrite(soup, name) || EqmSoupDestroy(&soup))
+      exit(1);
+  }
+}
+
 #define XDMF_ARRAY(dimensions, format, text)                                                                           \
   "<DataItem DataType=\"Float\" Dimensions=\"" dimensions "\" Format=\"" format "\">" text "</DataItem>"
 #define XDMF_FILE(points, topology, cells, field)                                                                      \
@@ -54,8 +82,10 @@ int main(int argc, char **argv)
   int count;
 
   if (argc != 2 || !samples) return 2;
+  if (EqmInitialize(&argc, &argv)) return 1;
   count = MakeSamples(samples);
-  for (int i = 0; i < count; ++i) Save(argv[1], samples[i].suffix, i, samples[i].bytes, samples[i].length);
+  for (int i = 0; i < count; ++i) SaveSample(argv[1], &samples[i], i);
+  SaveHdf5(argv[1]);
   SaveTexts(argv[1], "points", 4, csv);
   SaveTexts(argv[1], "density", 4, csv);
   SaveTexts(argv[1], "table", 4, csv);
@@ -63,5 +93,5 @@ int main(int argc, char **argv)
   SaveTexts(argv[1], "options", 4, options);
   Save(argv[1], "points", 4, npy, sizeof(npy) - 1);
   free(samples);
-  return 0;
+  return EqmFinalize() ? 1 : 0;
 }
