@@ -4,9 +4,10 @@
     perf/time_to_energy.py                                  generated surfaces of 10,000 and 48,000 vertices
     perf/time_to_energy.py bunny.obj scan.ply,2             meshes of one's own; ,2: refined twice first
     perf/time_to_energy.py --command sphere head.obj        against rgd -max_it 100
+    perf/time_to_energy.py --command ball 60000 solid.msh   against ncg -max_it 500
     perf/time_to_energy.py --settings "-start cascade -linear_solver hierarchy" --repeat 5
 
-The reference runs first (disk, square: -method ncg -max_it 100; sphere: -method rgd -max_it 100); its energy is the target of the other
+The reference runs first (disk, square: -method ncg -max_it 100; sphere: -method rgd -max_it 100; ball: -method ncg -max_it 500); its energy is the target of the other
 settings (-energy_target). All of them take turns, --repeat rounds; of a setting the median is told of: seconds of the processor in all,
 own ones without what every run does alike (reading, distributing, measuring, writing; the share of start and iterations is that of the
 program's clock), and the ratios of the reference's to them, medians over the rounds. One rank, one thread. Leaves
@@ -22,8 +23,9 @@ from runs import environment, find_program, machine, make_mesh, run_once, write_
 from tables import exponent
 
 REFERENCE = {"disk": ("-method", "ncg", "-max_it", "100"), "square": ("-method", "ncg", "-max_it", "100"),
-             "sphere": ("-method", "rgd", "-max_it", "100")}
+             "sphere": ("-method", "rgd", "-max_it", "100"), "ball": ("-method", "ncg", "-max_it", "500", "-energy_rtol", "0")}
 SETTINGS = ("", "-method cascade", "-start cascade -linear_solver hierarchy")
+SHAPES = {"sphere": "head", "ball": "blob"}
 
 
 def arguments():
@@ -36,14 +38,14 @@ def arguments():
     parser.add_argument("--folder", default="perf-results")
     args = parser.parse_args()
     args.meshes = args.meshes or ["10000", "48000"]
-    args.settings = args.settings or SETTINGS
+    args.settings = args.settings or (SETTINGS[:1] if args.command == "ball" else SETTINGS)
     return args
 
 
 def prepare(args, name):
     """The mesh as a file that is read fast, refined."""
     if name.isdigit():
-        return make_mesh(args.program, args.folder, "head" if args.command == "sphere" else "hills", int(name))
+        return make_mesh(args.program, args.folder, SHAPES.get(args.command, "hills"), int(name))
     file, _, times = name.partition(",")
     mesh = os.path.join(args.folder, f"{os.path.splitext(os.path.basename(file))[0]}-{times or 0}.h5")
     if not os.path.exists(mesh):
@@ -78,8 +80,9 @@ def measure(args, mesh):
                      "angle": last["angle_error_deg"]["mean"], "folds": last["folds"], "iterations": last["iterations"],
                      **last["work"]})
         row = rows[-1]
+        angle = "" if row["angle"] is None else f" {row['angle']:.1f} degrees,"
         print(f"{row['mesh.vertices']:>9,} {row['cpu_seconds']:8.2f} s, own {row['own_seconds']:8.2f} s, ratio {row['ratio']:5.2f}, own "
-              f"{row['own_ratio']:5.2f}, E {row['energy']:.3e}{'' if row['reached'] else ' (not reached)'}, {row['angle']:.1f} degrees, "
+              f"{row['own_ratio']:5.2f}, E {row['energy']:.3e}{'' if row['reached'] else ' (not reached)'},{angle} "
               f"{row['folds']} folds, {name}", flush=True)
     return rows
 

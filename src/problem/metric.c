@@ -8,6 +8,7 @@
 #include "domain/domain_private.h"
 #include "energy/cellframe.h"
 #include "problem/objective.h"
+#include "problem/solenoidal.h"
 #include "geometry/simplex.h"
 #include "problem/term.h"
 
@@ -16,6 +17,8 @@ struct _p_EqmMetric {
   PetscReal *weights;
   EqmPlace at;            /* the map that the present factor belongs to */
   EqmLinear gauss_newton; /* in the ball, with vertices in frames; else NULL, and there is a Laplacian, below */
+  EqmSolenoidal smooth;   /* beside multigrid, where the domain is the ball; else NULL */
+  PetscBool adds_smooth;  /* the present factor has a part for it, too */
   EqmPlace coarse_at;     /* the map that multigrid's coarse spaces were built for, and whether they are reused */
   PetscBool keeps_coarse;
   PetscReal *mass, *columns, *ambient;
@@ -26,6 +29,11 @@ struct _p_EqmMetric {
 static PetscBool NeedsGaussNewton(EqmDomain domain)
 {
   return (PetscBool)(domain->measure == EQM_MEASURE_VOLUME && !domain->spherical_coordinates);
+}
+
+static PetscBool IsBall(EqmDomain domain)
+{
+  return (PetscBool)(domain->motion[1] == &EqmMotionSphere);
 }
 
 /* Allocate the work space of a Laplacian metric: columns of right-hand sides. */
@@ -56,6 +64,8 @@ PetscErrorCode EqmMetricCreate(EqmProblem problem, EqmMetric *out)
   if (NeedsGaussNewton(problem->domain)) {
     PetscCall(EqmPlaceCreate(problem->domain, &metric->coarse_at));
     PetscCall(EqmProblemCreateLinear(problem, EQM_MATRIX_METRIC, &metric->gauss_newton));
+    if (EqmLinearHasCoarseSpaces(metric->gauss_newton) && IsBall(problem->domain))
+      PetscCall(EqmSolenoidalCreate(problem, &metric->smooth));
   } else {
     PetscCall(CreateLaplacian(problem, metric));
   }
@@ -72,6 +82,7 @@ PetscErrorCode EqmMetricDestroy(EqmMetric *metric)
   PetscCall(PetscFree((*metric)->weights));
   PetscCall(PetscFree4((*metric)->mass, (*metric)->columns, (*metric)->ambient, (*metric)->group));
   PetscCall(EqmLinearDestroy(&(*metric)->gauss_newton));
+  PetscCall(EqmSolenoidalDestroy(&(*metric)->smooth));
   PetscCall(PetscFree(*metric));
   PetscFunctionReturn(0);
 }
@@ -133,6 +144,8 @@ static PetscErrorCode FactorGaussNewton(EqmMetric metric, const EqmPlace *place)
   PetscCall(EqmLinearFactor(metric->gauss_newton, CellGaussNewton, &gn, 1., &success));
   PetscCall(PetscFree(image));
   PetscCheck(success, problem->comm, PETSC_ERR_MAT_CH_ZRPVT, "no factor of the metric: the map is not finite");
+  metric->adds_smooth = (PetscBool)(metric->smooth && !problem->terms);
+  if (metric->adds_smooth) PetscCall(EqmSolenoidalFactor(metric->smooth, place, metric->weights, l_v_share));
   PetscFunctionReturn(0);
 }
 
@@ -224,16 +237,24 @@ static PetscErrorCode ApplyByDof(EqmMetric metric, Vec g, Vec h)
   PetscFunctionReturn(0);
 }
 
-/* All at once: the matrix belongs to A/2 times the Hessian. */
+/* All at once: the matrix belongs to A/2 times the Hessian. To a cycle of multigrid comes what smooth motions without
+   compression ask for; with added terms, which may be stiff for these, it does not. */
 static PetscErrorCode ApplyCoupled(EqmMetric metric, Vec g, Vec h)
 {
+  Vec gradient = g;
   PetscScalar *array;
 
   PetscFunctionBegin;
+  if (metric->adds_smooth && g == h) {
+    PetscCall(VecDuplicate(g, &gradient));
+    PetscCall(VecCopy(g, gradient));
+  }
   if (g != h) PetscCall(VecCopy(g, h));
   PetscCall(VecGetArray(h, &array));
   PetscCall(EqmLinearApply(metric->gauss_newton, 1, array, array));
   PetscCall(VecRestoreArray(h, &array));
+  if (metric->adds_smooth) PetscCall(EqmSolenoidalAdd(metric->smooth, &metric->at, gradient, h));
+  if (gradient != g) PetscCall(VecDestroy(&gradient));
   PetscFunctionReturn(0);
 }
 
