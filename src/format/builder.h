@@ -29,6 +29,7 @@ typedef struct {
 typedef struct {
   EqmInput *in;                                  /* for messages */
   size_t vertices_before, texture_points_before; /* of a part of a file: those of the parts before it */
+  PetscBool texture_of_part; /* corners number the texture points of their part, not those of the file */
   size_t num_vertices, vertex_capacity;
   PetscReal *vertices; /* 3 * vertex_capacity */
   EqmCellList triangles, tetrahedra;

@@ -100,7 +100,8 @@ static PetscErrorCode AddGroups(const EqmCellList *cells, EqmSerialMesh *mesh)
 PetscErrorCode EqmBuilderTakeFields(EqmBuilder *builder, EqmSerialMesh *mesh, const EqmCellList *cells,
                                     PetscBool has_groups)
 {
-  const PetscBool has_rows = cells->row && cells->num_rows == cells->count ? PETSC_TRUE : PETSC_FALSE;
+  /* a part of a file may have rows and no cell */
+  const PetscBool has_rows = builder->has_rows && cells->num_rows == cells->count ? PETSC_TRUE : PETSC_FALSE;
   PetscReal *values;
 
   if (builder->rows_are_groups) return has_groups ? AddGroups(cells, mesh) : 0;

@@ -198,16 +198,16 @@ static PetscErrorCode ShareLeft(EqmBuilder *builder, MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
-/* What the fields of the whole surface depend on. Collective. */
-static PetscErrorCode ShareFacts(const EqmBuilder *builder, MPI_Comm comm, Facts *facts)
+/* What the fields of the whole mesh depend on. Collective. */
+static PetscErrorCode ShareFacts(const EqmBuilder *builder, const EqmCellList *cells, MPI_Comm comm, Facts *facts)
 {
-  PetscInt64 sums[3] = {(PetscInt64)builder->num_texture_points, (PetscInt64)builder->num_polygons, 0}, faces, before;
+  PetscInt64 sums[2] = {(PetscInt64)builder->num_texture_points, (PetscInt64)builder->num_polygons}, faces, before;
 
   PetscFunctionBegin;
   faces = (PetscInt64)(builder->triangles.count + 3 * builder->num_polygons - builder->polygon_corners.count);
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_INT64, MPI_SUM, comm));
   PetscCallMPI(MPI_Scan(&faces, &before, 1, MPIU_INT64, MPI_SUM, comm));
-  *facts = FactsOf(builder, &builder->triangles, (size_t)sums[0]);
+  *facts = FactsOf(builder, cells, (size_t)sums[0]);
   facts->num_polygons = sums[1];
   facts->faces_before = before - faces;
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &facts->has_texture, 1, MPIU_BOOL, MPI_LAND, comm));
@@ -215,26 +215,44 @@ static PetscErrorCode ShareFacts(const EqmBuilder *builder, MPI_Comm comm, Facts
   PetscFunctionReturn(0);
 }
 
-/* EqmBuilderFinishPart - end a surface of which every rank has made a part: hand the part over, or free everything
-   where `understood` is false on a rank or there are no triangles, and say so on all. Collective. */
+/* Which cells the parts have together; `understood` is false where there are none, or some that one cannot map.
+   Collective. */
+static PetscErrorCode ShareKinds(const EqmBuilder *builder, MPI_Comm comm, PetscInt *cell_size, PetscBool *has_polygons,
+                                 PetscBool *understood)
+{
+  PetscInt64 sums[6] = {*understood ? 0 : 1,
+                        (PetscInt64)builder->triangles.count,
+                        (PetscInt64)builder->tetrahedra.count,
+                        (PetscInt64)builder->num_polygons,
+                        builder->other_surface[0] ? 1 : 0,
+                        builder->other_volume[0] ? 1 : 0};
+
+  PetscFunctionBegin;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 6, MPIU_INT64, MPI_SUM, comm));
+  *cell_size = sums[2] ? 4 : 3;
+  *has_polygons = sums[3] && !sums[2] ? PETSC_TRUE : PETSC_FALSE;
+  *understood = !sums[0] && !sums[5] && (sums[2] || (sums[1] && !sums[4])) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* EqmBuilderFinishPart - end a mesh of which every rank has made a part: hand the part over, or free everything where
+   `understood` is false on a rank or there are no cells that can be mapped, and say so on all. Collective. */
 PetscErrorCode EqmBuilderFinishPart(EqmBuilder *builder, MPI_Comm comm, PetscBool *understood, EqmSerialMesh *part)
 {
-  PetscInt64 num_triangles = (PetscInt64)builder->triangles.count;
+  const EqmCellList *cells;
+  PetscInt cell_size;
+  PetscBool has_polygons;
   Facts facts;
 
   PetscFunctionBegin;
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, understood, 1, MPIU_BOOL, MPI_LAND, comm));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &num_triangles, 1, MPIU_INT64, MPI_SUM, comm));
-  if (!num_triangles) *understood = PETSC_FALSE;
+  PetscCall(ShareKinds(builder, comm, &cell_size, &has_polygons, understood));
+  cells = cell_size == 3 ? &builder->triangles : &builder->tetrahedra;
   if (*understood) {
-    PetscInt64 num_polygons = (PetscInt64)builder->num_polygons;
-
-    PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &num_polygons, 1, MPIU_INT64, MPI_SUM, comm));
-    if (num_polygons) PetscCall(CutPolygons(builder, comm));
-    PetscCall(ShareFacts(builder, comm, &facts));
-    if (facts.has_texture) PetscCall(FetchTexture(builder, comm));
+    if (has_polygons) PetscCall(CutPolygons(builder, comm));
+    PetscCall(ShareFacts(builder, cells, comm, &facts));
+    if (facts.has_texture && !builder->texture_of_part) PetscCall(FetchTexture(builder, comm));
     PetscCall(ShareLeft(builder, comm));
-    PetscCall(HandOver(builder, 3, &facts, part));
+    PetscCall(HandOver(builder, cell_size, &facts, part));
   }
   PetscCall(FreeLists(builder));
   PetscFunctionReturn(0);

@@ -5,6 +5,7 @@
 
 #include <equimap/soup.h>
 #include "base/atomicfile.h"
+#include "part.h"
 
 /* Numbers that belong to the vertices or to the cells of a mesh. Formats that cannot hold them leave them out. */
 typedef struct {
@@ -18,16 +19,11 @@ typedef struct {
    failure. Whatever the bytes are, it returns. */
 typedef PetscErrorCode (*EqmParser)(const char *bytes, size_t length, EqmSerialMesh *mesh, char *error,
                                     size_t error_length);
-/* The lines of a file that a rank parses, and the bytes before them. */
-typedef struct {
-  char *bytes;
-  size_t length, before;
-} EqmFilePart;
-/* A parser of one rank's part of a file: the vertices and triangles of its lines, with the numbers that they have in
-   the whole file; fields, names and metadata are the same on every rank. `understood` is false on every rank if the
-   file is not as it should be on one: the parser of the whole file then says why. Collective. */
-typedef PetscErrorCode (*EqmPartParser)(MPI_Comm comm, const EqmFilePart *part, EqmSerialMesh *mesh,
-                                        PetscBool *understood);
+/* A parser on every rank, of a part of the file each: consecutive vertices and cells, in rank order, that name vertices
+   by their numbers in the whole file; fields, names and metadata are the same on every rank. `understood` is false on
+   every rank if the file is not as it should be on one, or not in a form that can be read in parts: the parser of the
+   whole file then reads it, or says what is wrong. Collective. */
+typedef PetscErrorCode (*EqmPartParser)(const EqmPartFile *file, EqmSerialMesh *mesh, PetscBool *understood);
 /* A writer into an open file. For one rank. Failures of the file are remembered by the file itself; what the format
    cannot hold is an EQM_ERR_USAGE, quietly, with a sentence in `error`. */
 typedef PetscErrorCode (*EqmWriter)(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
@@ -43,6 +39,7 @@ typedef struct {
   const char *name;
   const char *suffixes;                                     /* separated by blanks */
   PetscBool (*recognise)(const char *bytes, size_t length); /* by the file's first bytes; NULL: by suffix alone */
+  PetscBool by_length;                                      /* `recognise` wants to know the length of the whole file */
   EqmParser parse;                                          /* NULL: cannot be read by one rank */
   EqmPartParser parse_part;                                 /* used on several ranks; NULL: one parses all */
   EqmWriter write;                                          /* NULL: cannot be written by one rank */
@@ -86,10 +83,6 @@ PETSC_INTERN PetscErrorCode EqmRequireTriangles(const EqmSerialMesh *mesh, const
 /* Read a file into memory on this rank; see load.c. Not collective. */
 PETSC_INTERN PetscErrorCode EqmFormatLoadBytes(const char *file, char **bytes, size_t *length, char *error,
                                                size_t error_length);
-
-/* This rank's part of a text file, cut between lines; `success` is false on every rank if on one it cannot be read.
-   Free the bytes with free(). Collective. */
-PETSC_INTERN PetscErrorCode EqmFilePartRead(MPI_Comm comm, const char *file, EqmFilePart *part, PetscBool *success);
 
 /* Begin the definition of a format's row: EQM_DEFINE_FORMAT(Obj) = {.name = "OBJ", ...}; */
 #define EQM_DEFINE_FORMAT(id)                                                                                          \

@@ -230,7 +230,7 @@ static PetscErrorCode ShareSurvey(MPI_Comm comm, EqmInput *in, EqmBuilder *build
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(1, &names));
   Survey(in, count, names);
-  *understood = names->overflow ? PETSC_FALSE : PETSC_TRUE;
+  if (names->overflow) *understood = PETSC_FALSE;
   PetscCallMPI(MPI_Scan(count, before, 2, MPIU_INT64, MPI_SUM, comm));
   PetscCall(MPIU_Allreduce(count, total, 2, MPIU_INT64, MPI_SUM, comm));
   builder->vertices_before = (size_t)(before[0] - count[0]);
@@ -242,9 +242,10 @@ static PetscErrorCode ShareSurvey(MPI_Comm comm, EqmInput *in, EqmBuilder *build
 }
 
 /* Read this rank's part of an OBJ file. See EqmPartParser. */
-static PetscErrorCode ParseObjPart(MPI_Comm comm, const EqmFilePart *part, EqmSerialMesh *mesh, PetscBool *understood)
+static PetscErrorCode ParseObjPart(const EqmPartFile *file, EqmSerialMesh *mesh, PetscBool *understood)
 {
   char unused[EQM_MESSAGE_MAX];
+  EqmFilePart part;
   EqmInput in;
   EqmBuilder builder;
   EqmObjGroups *groups;
@@ -252,17 +253,19 @@ static PetscErrorCode ParseObjPart(MPI_Comm comm, const EqmFilePart *part, EqmSe
   PetscInt64 total[2];
 
   PetscFunctionBegin;
-  EqmInputOpen(&in, part->bytes, part->length, unused, sizeof(unused));
-  if (part->before == 0) EqmSkipMark(&in);
+  PetscCall(EqmPartFileLines(file, 0, NULL, &part, understood));
+  EqmInputOpen(&in, part.bytes, *understood ? part.length : 0, unused, sizeof(unused));
+  if (part.before == 0) EqmSkipMark(&in);
   EqmBuilderOpen(&builder, &in);
   PetscCall(PetscMalloc1(2, &groups));
-  PetscCall(ShareSurvey(comm, &in, &builder, groups, total, understood));
+  PetscCall(ShareSurvey(file->comm, &in, &builder, groups, total, understood));
   in.cursor = in.start;
-  if (part->before == 0) EqmSkipMark(&in);
+  if (part.before == 0) EqmSkipMark(&in);
   if (ParseStatements(&in, &builder, &groups[0], &findings)) *understood = PETSC_FALSE;
   if (total[0] > PETSC_MAX_INT || findings.index >= total[0] || (findings.foreign && !total[0]))
     *understood = PETSC_FALSE;
-  PetscCall(EqmBuilderFinishPart(&builder, comm, understood, mesh));
+  PetscCall(PetscFree(part.bytes));
+  PetscCall(EqmBuilderFinishPart(&builder, file->comm, understood, mesh));
   if (*understood) PetscCall(EqmObjKeepNames(&groups[1], &mesh->metadata));
   PetscCall(PetscFree(groups));
   PetscFunctionReturn(0);

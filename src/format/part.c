@@ -1,22 +1,22 @@
-/* A text file in parts, one for each rank, that begin and end between lines. */
-#include "format.h"
+#include "part.h"
+#include "input.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { CHUNK = 65536, LOOK_BACK = 3 };
+enum { CHUNK = 65536, LOOK_BACK = 3, WINDOW = 1 << 20 };
 
 /* Bytes [begin, begin + count) of the file, fewer only at its end; -1: they cannot be read. */
-static ssize_t ReadAt(int descriptor, off_t begin, size_t count, char *bytes)
+static ssize_t ReadAt(int descriptor, PetscInt64 begin, size_t count, char *bytes)
 {
   size_t done = 0;
 
   while (done < count) {
-    const ssize_t got = pread(descriptor, bytes + done, PetscMin(count - done, (size_t)1 << 30), begin + (off_t)done);
+    const ssize_t got =
+        pread(descriptor, bytes + done, PetscMin(count - done, (size_t)1 << 30), (off_t)(begin + (PetscInt64)done));
 
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return -1;
@@ -26,6 +26,70 @@ static ssize_t ReadAt(int descriptor, off_t begin, size_t count, char *bytes)
   return (ssize_t)done;
 }
 
+/* The file's length, and its first bytes; -1: it is not open, no regular file or cannot be read. */
+static PetscErrorCode LookAt(EqmPartFile *file, PetscInt64 *length)
+{
+  struct stat status;
+  ssize_t got = 0;
+
+  PetscFunctionBegin;
+  *length = -1;
+  PetscCall(PetscMalloc1(EQM_PART_HEAD, &file->head));
+  if (file->descriptor < 0 || fstat(file->descriptor, &status) || !S_ISREG(status.st_mode)) PetscFunctionReturn(0);
+  if (file->rank == 0) got = ReadAt(file->descriptor, 0, EQM_PART_HEAD, file->head);
+  if (got >= 0) *length = status.st_size;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmPartFileOpen(MPI_Comm comm, const char *name, EqmPartFile *file, PetscBool *success)
+{
+  PetscInt64 length, bounds[2];
+
+  PetscFunctionBegin;
+  *file = (EqmPartFile){.comm = comm};
+  PetscCallMPI(MPI_Comm_rank(comm, &file->rank));
+  PetscCallMPI(MPI_Comm_size(comm, &file->size));
+  file->descriptor = open(name, O_RDONLY | O_CLOEXEC);
+  PetscCall(LookAt(file, &length));
+  bounds[0] = length;
+  bounds[1] = -length;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, bounds, 2, MPIU_INT64, MPI_MIN, comm));
+  *success = bounds[0] >= 0 && bounds[0] == -bounds[1] ? PETSC_TRUE : PETSC_FALSE;
+  if (!*success) PetscFunctionReturn(0);
+  file->length = length;
+  file->head_length = (size_t)PetscMin(length, EQM_PART_HEAD);
+  PetscCallMPI(MPI_Bcast(file->head, (PetscMPIInt)file->head_length, MPI_CHAR, 0, comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmPartFileClose(EqmPartFile *file)
+{
+  PetscFunctionBegin;
+  if (file->descriptor >= 0) close(file->descriptor);
+  PetscCall(PetscFree(file->head));
+  PetscFunctionReturn(0);
+}
+
+void EqmPartFileShare(const EqmPartFile *file, PetscInt64 total, PetscInt64 *first, PetscInt64 *count)
+{
+  const PetscInt64 even = total / file->size, rest = total % file->size;
+
+  *first = even * file->rank + PetscMin(file->rank, rest);
+  *count = even + (file->rank < rest ? 1 : 0);
+}
+
+PetscErrorCode EqmPartFileBytes(const EqmPartFile *file, PetscInt64 before, PetscInt64 length, EqmFilePart *part)
+{
+  PetscFunctionBegin;
+  *part = (EqmFilePart){.before = before};
+  if (before < 0 || length < 0 || length > file->length - before) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1((size_t)length + 1, &part->bytes));
+  part->length = (size_t)length;
+  if (ReadAt(file->descriptor, before, part->length, part->bytes) != (ssize_t)part->length)
+    PetscCall(PetscFree(part->bytes));
+  PetscFunctionReturn(0);
+}
+
 /* May the file be cut before c[0]? After the end of a line (\n, \r\n, \r) that no backslash continues. */
 static PetscBool IsCut(const char *c)
 {
@@ -33,21 +97,34 @@ static PetscBool IsCut(const char *c)
   return c[-1] == '\r' && c[0] != '\n' && c[-2] != '\\' ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The first cut at or behind `from` and before `to`; -1: there is none. */
-static PetscErrorCode FindCut(int descriptor, PetscInt64 from, PetscInt64 to, PetscInt64 *cut, PetscBool *success)
+/* Does the line begin with this word? */
+static PetscBool BeginsWith(const char *line, const char *end, const char *word)
+{
+  char unused[8];
+  EqmInput in;
+
+  EqmInputOpen(&in, line, (size_t)(end - line), unused, sizeof(unused));
+  return EqmReadKeyword(&in, word);
+}
+
+/* The first cut at or behind `from` and before `to`; -1: there is none. Cuts are looked for in the first half of each
+   stretch of bytes, so that the other half shows how the line begins. */
+static PetscErrorCode FindCut(const EqmPartFile *file, PetscInt64 from, PetscInt64 to, const char *word,
+                              PetscInt64 *cut, PetscBool *success)
 {
   char *bytes;
 
   PetscFunctionBegin;
   *cut = -1;
   PetscCall(PetscMalloc1(CHUNK, &bytes));
-  for (PetscInt64 at = PetscMax(from - LOOK_BACK, 0); *cut < 0 && at + LOOK_BACK < to; at += CHUNK - LOOK_BACK) {
-    const ssize_t got = ReadAt(descriptor, (off_t)at, CHUNK, bytes);
+  for (PetscInt64 at = PetscMax(from - LOOK_BACK, 0); *cut < 0 && at + LOOK_BACK < to; at += CHUNK / 2) {
+    const ssize_t got = ReadAt(file->descriptor, at, CHUNK, bytes);
 
     if (got < 0) *success = PETSC_FALSE;
     if (got <= LOOK_BACK) break;
     for (PetscInt64 k = PetscMax(LOOK_BACK, from - at); k < got && at + k < to && *cut < 0; ++k) {
-      if (IsCut(bytes + k)) *cut = at + k;
+      if (k >= CHUNK / 2 + LOOK_BACK) break;
+      if (IsCut(bytes + k) && (!word || BeginsWith(bytes + k, bytes + got, word))) *cut = at + k;
     }
   }
   PetscCall(PetscFree(bytes));
@@ -55,65 +132,71 @@ static PetscErrorCode FindCut(int descriptor, PetscInt64 from, PetscInt64 to, Pe
 }
 
 /* Where the parts of this rank and the next begin. A rank that finds no cut in its share of the bytes has no part. */
-static PetscErrorCode AgreeOnCuts(MPI_Comm comm, PetscInt64 mine, PetscInt64 length, PetscInt64 bounds[2])
+static PetscErrorCode AgreeOnCuts(const EqmPartFile *file, PetscInt64 mine, PetscInt64 begin, PetscInt64 bounds[2])
 {
-  PetscMPIInt size, rank;
+  const PetscMPIInt size = file->size;
   PetscInt64 *cut;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscMalloc1(size + 1, &cut));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPIU_INT64, cut, 1, MPIU_INT64, comm));
-  cut[0] = 0;
-  cut[size] = length;
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPIU_INT64, cut, 1, MPIU_INT64, file->comm));
+  cut[0] = begin;
+  cut[size] = file->length;
   for (PetscMPIInt r = size - 1; r > 0; --r) cut[r] = cut[r] < 0 ? cut[r + 1] : cut[r];
-  bounds[0] = cut[rank];
-  bounds[1] = cut[rank + 1];
+  bounds[0] = cut[file->rank];
+  bounds[1] = cut[file->rank + 1];
   PetscCall(PetscFree(cut));
   PetscFunctionReturn(0);
 }
 
-/* Do all ranks see the same file? */
-static PetscErrorCode OpenFile(MPI_Comm comm, const char *file, int *descriptor, PetscInt64 *length, PetscBool *success)
+PetscErrorCode EqmPartFileLines(const EqmPartFile *file, PetscInt64 begin, const char *word, EqmFilePart *part,
+                                PetscBool *success)
 {
-  PetscInt64 lengths[2];
-  struct stat status;
+  const PetscInt64 share = (file->length - begin) / file->size + 1, from = begin + share * file->rank;
+  PetscInt64 cut, bounds[2];
 
   PetscFunctionBegin;
-  *descriptor = open(file, O_RDONLY | O_CLOEXEC);
-  *length = -1;
-  if (*descriptor >= 0 && !fstat(*descriptor, &status) && S_ISREG(status.st_mode)) *length = status.st_size;
-  lengths[0] = *length;
-  lengths[1] = -*length;
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, lengths, 2, MPIU_INT64, MPI_MIN, comm));
-  *success = lengths[0] >= 0 && lengths[0] == -lengths[1] ? PETSC_TRUE : PETSC_FALSE;
+  *success = PETSC_TRUE;
+  PetscCall(FindCut(file, from, PetscMin(from + share, file->length), word, &cut, success));
+  PetscCall(AgreeOnCuts(file, cut, begin, bounds));
+  PetscCall(EqmPartFileBytes(file, bounds[0], bounds[1] - bounds[0], part));
+  if (!part->bytes) *success = PETSC_FALSE;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, success, 1, MPIU_BOOL, MPI_LAND, file->comm));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmFilePartRead(MPI_Comm comm, const char *file, EqmFilePart *part, PetscBool *success)
+const char *EqmFileWindowAt(EqmFileWindow *window, PetscInt64 offset, size_t count)
 {
-  PetscInt64 length, cut, bounds[2];
-  PetscMPIInt size, rank;
-  int descriptor;
+  const PetscInt64 have = window->begin + (PetscInt64)window->length;
 
-  PetscFunctionBegin;
-  *part = (EqmFilePart){0};
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(OpenFile(comm, file, &descriptor, &length, success));
-  if (*success) {
-    const PetscInt64 share = length / size + 1;
+  if (offset < 0 || offset > window->file->length - (PetscInt64)count) return NULL;
+  if (offset < window->begin || offset + (PetscInt64)count > have || !window->bytes) {
+    ssize_t got;
 
-    PetscCall(FindCut(descriptor, share * rank, PetscMin(share * (rank + 1), length), &cut, success));
-    PetscCall(AgreeOnCuts(comm, cut, length, bounds));
-    part->before = (size_t)bounds[0];
-    part->length = (size_t)(bounds[1] - bounds[0]);
-    part->bytes = malloc(part->length + 1);
-    if (!part->bytes || ReadAt(descriptor, (off_t)bounds[0], part->length, part->bytes) != (ssize_t)part->length)
-      *success = PETSC_FALSE;
-    PetscCall(MPIU_Allreduce(MPI_IN_PLACE, success, 1, MPIU_BOOL, MPI_LAND, comm));
+    if (!window->bytes && PetscMalloc1(WINDOW, &window->bytes)) return NULL;
+    got = ReadAt(window->file->descriptor, offset, WINDOW, window->bytes);
+    window->begin = offset;
+    window->length = (size_t)PetscMax(got, 0);
+    if (window->length < count) return NULL;
   }
-  if (descriptor >= 0) close(descriptor);
+  return window->bytes + (offset - window->begin);
+}
+
+PetscInt64 EqmFileWindowFind(EqmFileWindow *window, PetscInt64 offset, char byte)
+{
+  for (const char *from; (from = EqmFileWindowAt(window, offset, 1)) != NULL;) {
+    const char *const end = window->bytes + window->length, *const found = memchr(from, byte, (size_t)(end - from));
+
+    if (found) return offset + (found - from);
+    offset += end - from;
+  }
+  return -1;
+}
+
+PetscErrorCode EqmFileWindowReset(EqmFileWindow *window)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(window->bytes));
+  window->length = 0;
   PetscFunctionReturn(0);
 }

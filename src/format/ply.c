@@ -18,8 +18,8 @@ static PetscBool RecognisePly(const char *bytes, size_t length)
   return length >= 4 && !memcmp(bytes, "ply", 3) && EqmIsSpace(bytes[3]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Bytes that a row of this element takes at least. */
-static size_t SmallestRow(const EqmPlyHeader *header, const EqmPlyElement *element)
+/* EqmPlySmallestRow - bytes that a row of this element takes at least. Not collective. */
+size_t EqmPlySmallestRow(const EqmPlyHeader *header, const EqmPlyElement *element)
 {
   size_t size = 0;
 
@@ -159,9 +159,10 @@ static PetscErrorCode ReadRow(EqmInput *in, const EqmPlyHeader *header, const Eq
   return element->is_face || element->is_strips ? AddFace(header, element, position, lists, builder) : 0;
 }
 
-static PetscErrorCode ParseRows(EqmInput *in, const EqmPlyHeader *header, EqmPlyElement *element, EqmBuilder *builder)
+/* EqmPlyParseRows - the rows of an element. Not collective. Errors: EQM_ERR_IO, EQM_ERR_MESH (quiet). */
+PetscErrorCode EqmPlyParseRows(EqmInput *in, const EqmPlyHeader *header, EqmPlyElement *element, EqmBuilder *builder)
 {
-  const size_t smallest = SmallestRow(header, element);
+  const size_t smallest = EqmPlySmallestRow(header, element);
   PetscReal *vertices = NULL, *uv = NULL;
   Lists lists = {0};
   PetscErrorCode code = 0;
@@ -177,7 +178,7 @@ static PetscErrorCode ParseRows(EqmInput *in, const EqmPlyHeader *header, EqmPly
   if (element->is_vertex && header->textured) EqmTry(EqmBuilderAddTexturePoints(builder, (size_t)element->count, &uv));
   EqmTry(KeepProperties(header, element, builder));
   for (PetscInt64 i = 0; i < element->count && !code; ++i) {
-    EqmBuilderSetRow(builder, element->is_face ? i : element->count);
+    EqmBuilderSetRow(builder, element->is_face ? i : -1); /* what is in strips has no row */
     code = ReadRow(in, header, element, i, builder, vertices ? vertices + 3 * i : NULL, uv ? uv + 2 * i : NULL, &lists);
   }
   EqmTry(PetscFree(lists.corners));
@@ -190,7 +191,7 @@ static PetscErrorCode ParseMesh(EqmInput *in, EqmPlyHeader *header, EqmBuilder *
   EqmTry(EqmPlyParseHeader(in, header));
   in->binary = header->ascii ? PETSC_FALSE : PETSC_TRUE;
   for (PetscInt e = 0; e < header->num_elements; ++e) {
-    EqmTry(ParseRows(in, header, &header->element[e], builder));
+    EqmTry(EqmPlyParseRows(in, header, &header->element[e], builder));
   }
   return 0;
 }
@@ -215,6 +216,7 @@ EQM_DEFINE_FORMAT(Ply) = {.name = "PLY",
                           .suffixes = "ply",
                           .recognise = RecognisePly,
                           .parse = ParsePly,
+                          .parse_part = EqmPlyParsePart,
                           .write = EqmWritePly,
                           .writes_texture = PETSC_TRUE,
                           .vertex_fields = PETSC_TRUE,

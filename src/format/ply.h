@@ -2,7 +2,8 @@
 #ifndef EQM_FORMAT_PLY_H
 #define EQM_FORMAT_PLY_H
 
-#include "input.h"
+#include "builder.h"
+#include "part.h"
 #include "scalar.h"
 
 typedef enum {
@@ -46,5 +47,16 @@ typedef struct {
 } EqmPlyHeader;
 
 PETSC_INTERN PetscErrorCode EqmPlyParseHeader(EqmInput *in, EqmPlyHeader *header);
+PETSC_INTERN size_t EqmPlySmallestRow(const EqmPlyHeader *header, const EqmPlyElement *element);
+PETSC_INTERN PetscErrorCode EqmPlyParseRows(EqmInput *in, const EqmPlyHeader *header, EqmPlyElement *element,
+                                            EqmBuilder *builder);
+/* EqmPlyRowsOfPart - this rank's rows of an element of a binary file that begins at byte `begin`: their bytes (NULL
+   where there are none or they cannot be read; PetscFree them) and number. end - of the element. understood - false on
+   every rank if the file is too short or cannot be read on one. Collective. */
+PETSC_INTERN PetscErrorCode EqmPlyRowsOfPart(const EqmPartFile *file, const EqmPlyHeader *header,
+                                             const EqmPlyElement *element, PetscInt64 begin, EqmFilePart *part,
+                                             PetscInt64 *count, PetscInt64 *end, PetscBool *understood);
+/* EqmPlyParsePart - see EqmPartParser. */
+PETSC_INTERN PetscErrorCode EqmPlyParsePart(const EqmPartFile *file, EqmSerialMesh *mesh, PetscBool *understood);
 
 #endif

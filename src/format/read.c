@@ -41,55 +41,55 @@ PetscErrorCode EqmFormatReadOnRank(const char *file, int *row, EqmSerialMesh *me
   return code;
 }
 
-/* On rank 0: the row of a format that all ranks can parse, if name and first bytes of a file both show it; else -1. */
-static int RowForParts(const char *file)
+/* The row of a format of which each rank can parse a part, -1: none. */
+static int RowForParts(const char *name, const EqmPartFile *file)
 {
-  enum { HEAD = 65536 };
-  const int row = EqmFormatRowOfSuffix(file);
-  struct stat status;
-  char *head;
-  FILE *stream;
-  size_t length = 0;
-  PetscBool shown;
+  int row = EqmFormatRowOfContent(file->head, file->head_length);
 
-  if (row < 0 || !EqmFormatAt(row)->parse_part) return -1;
-  if (stat(file, &status) || !S_ISREG(status.st_mode)) return -1; /* a pipe can be read once */
-  head = malloc(HEAD);
-  stream = fopen(file, "rb");
-  if (head && stream) length = fread(head, 1, HEAD, stream);
-  shown = length && EqmFormatRowOfContent(head, length) == row ? PETSC_TRUE : PETSC_FALSE;
-  if (stream) fclose(stream);
-  free(head);
-  return shown ? row : -1;
+  if (row < 0) {
+    row = EqmFormatRowOfSuffix(name);
+    if (row >= 0 && !EqmFormatAt(row)->by_length) return -1;
+  }
+  return row >= 0 && EqmFormatAt(row)->parse_part ? row : -1;
+}
+
+/* On rank 0: a file that may be opened again and again, not a pipe, which can be read once. */
+static PetscBool IsRegular(const char *file)
+{
+  struct stat status;
+
+  return !stat(file, &status) && S_ISREG(status.st_mode) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Every rank its part of the file, where format and file allow that; else `soup` stays NULL. Collective. */
-static PetscErrorCode ReadParts(MPI_Comm comm, const char *file, EqmSoup *soup)
+static PetscErrorCode ReadParts(MPI_Comm comm, const char *name, EqmSoup *soup)
 {
-  EqmFilePart part;
+  EqmPartFile file;
   EqmSerialMesh mesh = {0};
   PetscMPIInt rank, size;
-  PetscBool success;
+  PetscBool success = PETSC_FALSE;
   int row = -1;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (size == 1) PetscFunctionReturn(0);
-  if (rank == 0) row = RowForParts(file);
-  PetscCallMPI(MPI_Bcast(&row, 1, MPI_INT, 0, comm));
-  if (row < 0) PetscFunctionReturn(0);
-  PetscCall(EqmFilePartRead(comm, file, &part, &success));
-  if (success) PetscCall(EqmFormatAt(row)->parse_part(comm, &part, &mesh, &success));
-  free(part.bytes);
-  if (success) PetscCall(EqmSoupCreateFromParts(comm, &mesh, file, soup));
+  if (rank == 0) success = IsRegular(name);
+  PetscCallMPI(MPI_Bcast(&success, 1, MPIU_BOOL, 0, comm));
+  if (!success) PetscFunctionReturn(0);
+  PetscCall(EqmPartFileOpen(comm, name, &file, &success));
+  if (success) row = RowForParts(name, &file);
+  success = PETSC_FALSE;
+  if (row >= 0) PetscCall(EqmFormatAt(row)->parse_part(&file, &mesh, &success));
+  PetscCall(EqmPartFileClose(&file));
+  if (success) PetscCall(EqmSoupCreateFromParts(comm, &mesh, name, soup));
   PetscFunctionReturn(0);
 }
 
 /* EqmSoupRead - read a mesh file; its format is chosen by its content first, then by its name.
 
-   Collective. HDF5 files are read by all ranks, each its slab, and so are OBJ files, each its lines. One rank reads and
-   parses those of the other formats, and what is not as it should be, and deals the mesh to all.
+   Collective. Files of formats that have a parser of parts, and HDF5 files, are read by all ranks, each its share. One
+   rank reads and parses those of the other formats, and what is not as it should be, and deals the mesh to all.
    Errors: EQM_ERR_IO (missing, unreadable, not a mesh, truncated; the message names file and line or byte),
    EQM_ERR_MESH (well-formed, but without triangles or tetrahedra, or with other cells). */
 PetscErrorCode EqmSoupRead(MPI_Comm comm, const char *file, EqmSoup *soup)

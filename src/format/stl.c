@@ -1,27 +1,26 @@
 /* STL, ASCII and binary. The file repeats a vertex in every triangle; equal coordinates are taken for one vertex,
    numbered in the order of first appearance. */
-#include "builder.h"
 #include "format.h"
 #include "scalar.h"
+#include "stl.h"
 #include "weld.h"
 
 #include <string.h>
 
-#define HEADER_BYTES   80
-#define TRIANGLE_BYTES 50
+#define HEADER_BYTES EQM_STL_HEADER
 
 /* Does the file's length agree with the number of triangles in a binary header? ASCII files cannot be recognised by
    their first word alone: many binary ones begin with "solid", too. */
-static PetscBool IsBinary(const char *bytes, size_t length)
+PetscBool EqmStlIsBinary(const char *bytes, size_t length)
 {
   if (length < HEADER_BYTES + 4) return PETSC_FALSE;
-  return (size_t)EqmLoadInteger(bytes + HEADER_BYTES, EQM_SCALAR_UINT32, PETSC_FALSE) * TRIANGLE_BYTES ==
+  return (size_t)EqmLoadInteger(bytes + HEADER_BYTES, EQM_SCALAR_UINT32, PETSC_FALSE) * EQM_STL_TRIANGLE ==
                  length - HEADER_BYTES - 4
              ? PETSC_TRUE
              : PETSC_FALSE;
 }
 
-static PetscBool IsAscii(const char *bytes, size_t length)
+PetscBool EqmStlIsAscii(const char *bytes, size_t length)
 {
   EqmInput in;
   char unused[8];
@@ -37,27 +36,33 @@ static PetscBool IsAscii(const char *bytes, size_t length)
 /* "solid" and a facet, or a length that fits a binary header. Not collective. */
 static PetscBool RecogniseStl(const char *bytes, size_t length)
 {
-  return IsBinary(bytes, length) || IsAscii(bytes, length) ? PETSC_TRUE : PETSC_FALSE;
+  return EqmStlIsBinary(bytes, length) || EqmStlIsAscii(bytes, length) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode EqmStlParseTriangles(const char *bytes, size_t num_triangles, EqmBuilder *builder)
+{
+  PetscReal *x;
+
+  EqmTry(EqmBuilderAddVertices(builder, 3 * num_triangles, &x));
+  for (size_t t = 0; t < num_triangles; ++t) {
+    for (size_t k = 0; k < 9; ++k) { /* after the normal's three numbers */
+      x[9 * t + k] = EqmLoadReal(bytes + EQM_STL_TRIANGLE * t + 12 + 4 * k, EQM_SCALAR_FLOAT32, PETSC_FALSE);
+    }
+  }
+  return 0;
 }
 
 static PetscErrorCode ParseBinary(EqmInput *in, EqmBuilder *builder)
 {
   const char *bytes;
   PetscInt64 num_triangles;
-  PetscReal *x;
 
   in->binary = PETSC_TRUE;
   EqmTry(EqmTakeBytes(in, HEADER_BYTES, "header", &bytes));
   EqmTry(EqmTakeBytes(in, 4, "header", &bytes));
   num_triangles = EqmLoadInteger(bytes, EQM_SCALAR_UINT32, PETSC_FALSE);
-  EqmTry(EqmTakeBytes(in, (size_t)num_triangles * TRIANGLE_BYTES, "triangles", &bytes));
-  EqmTry(EqmBuilderAddVertices(builder, 3 * (size_t)num_triangles, &x));
-  for (PetscInt64 t = 0; t < num_triangles; ++t) {
-    for (PetscInt k = 0; k < 9; ++k) { /* after the normal's three numbers */
-      x[9 * t + k] = EqmLoadReal(bytes + TRIANGLE_BYTES * t + 12 + 4 * k, EQM_SCALAR_FLOAT32, PETSC_FALSE);
-    }
-  }
-  return 0;
+  EqmTry(EqmTakeBytes(in, (size_t)num_triangles * EQM_STL_TRIANGLE, "triangles", &bytes));
+  return EqmStlParseTriangles(bytes, (size_t)num_triangles, builder);
 }
 
 /* The lines between "facet" and "endfacet". */
@@ -81,22 +86,29 @@ static PetscErrorCode ParseFacet(EqmInput *in, EqmBuilder *builder)
   return EqmRejectAt(in, position, EQM_ERR_IO, "a facet has %d vertices instead of three", (int)num_corners);
 }
 
-static PetscErrorCode ParseAscii(EqmInput *in, EqmBuilder *builder)
+PetscErrorCode EqmStlParseFacets(EqmInput *in, EqmBuilder *builder, PetscInt64 *open_solids)
 {
-  PetscInt open_solids = 0;
-
+  *open_solids = 0;
   EqmSkipSpace(in, 0);
   for (; in->cursor < in->end; EqmSkipLine(in)) {
     if (EqmReadKeyword(in, "facet")) {
       EqmTry(ParseFacet(in, builder));
     } else if (EqmReadKeyword(in, "solid")) {
-      ++open_solids;
+      ++*open_solids;
     } else if (EqmReadKeyword(in, "endsolid")) {
-      --open_solids;
+      --*open_solids;
     } else if (!EqmAtLineEnd(in)) {
       return EqmReject(in, EQM_ERR_IO, "neither a facet nor a solid: this is not an STL file, or a damaged one");
     }
   }
+  return 0;
+}
+
+static PetscErrorCode ParseAscii(EqmInput *in, EqmBuilder *builder)
+{
+  PetscInt64 open_solids;
+
+  EqmTry(EqmStlParseFacets(in, builder, &open_solids));
   if (open_solids) return EqmReject(in, EQM_ERR_IO, "the last endsolid is missing: the file is truncated");
   return 0;
 }
@@ -112,8 +124,8 @@ static PetscErrorCode WeldTriangles(EqmBuilder *builder)
 
 static PetscErrorCode ParseMesh(EqmInput *in, EqmBuilder *builder)
 {
-  PetscBool ascii =
-      IsAscii(in->start, EqmRemaining(in)) && !IsBinary(in->start, EqmRemaining(in)) ? PETSC_TRUE : PETSC_FALSE;
+  const size_t length = EqmRemaining(in);
+  const PetscBool ascii = EqmStlIsAscii(in->start, length) && !EqmStlIsBinary(in->start, length);
 
   EqmTry(ascii ? ParseAscii(in, builder) : ParseBinary(in, builder));
   return WeldTriangles(builder);
@@ -154,5 +166,10 @@ static PetscErrorCode WriteStl(EqmAtomicFile *file, const EqmSerialMesh *mesh, c
   return 0;
 }
 
-EQM_DEFINE_FORMAT(Stl) = {
-    .name = "STL", .suffixes = "stl", .recognise = RecogniseStl, .parse = ParseStl, .write = WriteStl};
+EQM_DEFINE_FORMAT(Stl) = {.name = "STL",
+                          .suffixes = "stl",
+                          .recognise = RecogniseStl,
+                          .by_length = PETSC_TRUE,
+                          .parse = ParseStl,
+                          .parse_part = EqmStlParsePart,
+                          .write = WriteStl};

@@ -1,6 +1,5 @@
 #include "weld.h"
 
-#include <stdint.h>
 #include <string.h>
 
 static uint64_t Mix(uint64_t h)
@@ -10,8 +9,7 @@ static uint64_t Mix(uint64_t h)
   return h ^ h >> 32;
 }
 
-/* Equal points have equal hashes: 0 and -0 are equal, and a NaN equals the same NaN. */
-static uint64_t HashOf(const PetscReal *point)
+uint64_t EqmWeldHash(const PetscReal *point)
 {
   uint64_t hash = 0;
 
@@ -48,7 +46,7 @@ PetscErrorCode EqmWeld(size_t num_points, PetscReal *points, size_t *num_distinc
   if (code) return code;
   for (size_t i = 0; i < num_points; ++i) {
     const PetscReal *point = points + 3 * i;
-    size_t slot = (size_t)HashOf(point) & (size - 1);
+    size_t slot = (size_t)EqmWeldHash(point) & (size - 1);
 
     while (table[slot] && !SamePoint(points + 3 * (size_t)(table[slot] - 1), point)) slot = (slot + 1) & (size - 1);
     if (!table[slot]) {

@@ -9,13 +9,12 @@
 static const struct {
   const char *name;
   EqmFuzzTarget target;
-} targets[] = {{"ply", EqmFuzzParser},     {"vtu", EqmFuzzParser},      {"gii", EqmFuzzParser},
-               {"vtk", EqmFuzzParser},     {"white", EqmFuzzParser},    {"msh", EqmFuzzParser},
-               {"mesh", EqmFuzzParser},    {"meshb", EqmFuzzParser},    {"off", EqmFuzzParser},
-               {"stl", EqmFuzzParser},     {"node", EqmFuzzParser},     {"obj", EqmFuzzParser},
-               {"obj_part", EqmFuzzPart},  {"points", EqmFuzzPoints},   {"hdf5", EqmFuzzHdf5},
-               {"xdmf", EqmFuzzXdmf},      {"density", EqmFuzzDensity}, {"table", EqmFuzzTable},
-               {"options", EqmFuzzOptions}};
+} targets[] = {{"ply", EqmFuzzParser},      {"vtu", EqmFuzzParser},   {"gii", EqmFuzzParser},
+               {"vtk", EqmFuzzParser},      {"white", EqmFuzzParser}, {"msh", EqmFuzzParser},
+               {"mesh", EqmFuzzParser},     {"meshb", EqmFuzzParser}, {"off", EqmFuzzParser},
+               {"stl", EqmFuzzParser},      {"node", EqmFuzzParser},  {"obj", EqmFuzzParser},
+               {"points", EqmFuzzPoints},   {"hdf5", EqmFuzzHdf5},    {"xdmf", EqmFuzzXdmf},
+               {"density", EqmFuzzDensity}, {"table", EqmFuzzTable},  {"options", EqmFuzzOptions}};
 
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);

@@ -11,7 +11,6 @@
 typedef void (*EqmFuzzTarget)(const char *name, const uint8_t *bytes, size_t length);
 
 PETSC_INTERN void EqmFuzzParser(const char *name, const uint8_t *bytes, size_t length);
-PETSC_INTERN void EqmFuzzPart(const char *name, const uint8_t *bytes, size_t length);
 PETSC_INTERN void EqmFuzzPoints(const char *name, const uint8_t *bytes, size_t length);
 PETSC_INTERN void EqmFuzzHdf5(const char *name, const uint8_t *bytes, size_t length);
 PETSC_INTERN void EqmFuzzXdmf(const char *name, const uint8_t *bytes, size_t length);

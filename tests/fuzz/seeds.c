@@ -26,10 +26,10 @@ static void SaveTexts(const char *folder, const char *name, int count, const cha
 /* For each reader of the sample; formats that share a parser share a reader. */
 static void SaveSample(const char *folder, const Sample *sample, int number)
 {
-  static const char *const reader[][2] = {{"tetgen", "node"}, {"vtp", "vtu"}, {"obj", "obj_part"}};
+  static const char *const reader[][2] = {{"tetgen", "node"}, {"vtp", "vtu"}};
 
   Save(folder, sample->suffix, number, sample->bytes, sample->length);
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 2; ++k) {
     if (!strcmp(sample->suffix, reader[k][0])) Save(folder, reader[k][1], number, sample->bytes, sample->length);
   }
 }

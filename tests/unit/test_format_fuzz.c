@@ -3,15 +3,10 @@
 #include <equimap/soup.h>
 #include "format/format.h"
 #include "format_samples.h"
+#include "mutations.h"
 #include "support/checks.h"
 
 #define MUTATIONS 600 /* of each sample and rank */
-
-static uint64_t Random(uint64_t *state)
-{
-  *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return *state >> 33;
-}
 
 static PetscBool HoldsTogether(const EqmSerialMesh *mesh)
 {
@@ -39,38 +34,6 @@ static void Try(const Sample *s, const EqmFormat *format, const char *bytes, siz
         "%s, %s %lld: code %d, message \"%s\"", s->name, what, which, (int)code, error);
   CHECK(EqmSerialMeshReset(&mesh) == 0);
   free(copy);
-}
-
-/* Change a few bytes: to anything, to a digit, by one bit; or put a large number, or take a piece away. */
-static size_t Mutate(char *bytes, size_t length, uint64_t *state)
-{
-  static const char *const numbers[] = {"99999999999999999999", "-1", "4294967295", "1e999", "0", "\377\377\377\377",
-                                        "\377\377\377\177"};
-  const int changes = 1 + (int)(Random(state) % 3);
-
-  for (int i = 0; i < changes && length > 1; ++i) {
-    const size_t at = Random(state) % length;
-    const char *number = numbers[Random(state) % 7];
-
-    switch (Random(state) % 5) {
-    case 0:
-      bytes[at] = (char)Random(state);
-      break;
-    case 1:
-      bytes[at] = (char)('0' + Random(state) % 10);
-      break;
-    case 2:
-      bytes[at] = (char)(bytes[at] ^ 1 << Random(state) % 8);
-      break;
-    case 3:
-      for (size_t k = 0; number[k] && at + k < length; ++k) bytes[at + k] = number[k];
-      break;
-    default:
-      memmove(bytes + at, bytes + at + 1, length - at - 1);
-      --length;
-    }
-  }
-  return length;
 }
 
 int main(int argc, char **argv)

@@ -1,0 +1,118 @@
+/* Formats that every rank reads a part of, as other programs and as this one write them: the same mesh, with all that
+   belongs to it, as one rank reads alone. */
+#include "support/parts.h"
+
+/* A row of a face with a number before it and a list behind it. */
+static void PlyFace(Text *text, PetscBool ascii, int num, const int *corner, int num_marks)
+{
+  const unsigned char flags = (unsigned char)corner[0], count = (unsigned char)num, marks = (unsigned char)num_marks;
+  const short mark = 17;
+
+  if (ascii) {
+    char line[120];
+    int used = snprintf(line, sizeof(line), "%d %d", flags, num);
+
+    for (int k = 0; k < num; k++) used += snprintf(line + used, sizeof(line) - (size_t)used, " %d", corner[k]);
+    used += snprintf(line + used, sizeof(line) - (size_t)used, " %d", num_marks);
+    for (int k = 0; k < num_marks; k++) used += snprintf(line + used, sizeof(line) - (size_t)used, " %d", mark);
+    Line(text, "%s", line);
+    return;
+  }
+  Bytes(text, &flags, 1);
+  Bytes(text, &count, 1);
+  Bytes(text, corner, (size_t)num * sizeof(int));
+  Bytes(text, &marks, 1);
+  for (int k = 0; k < num_marks; k++) Bytes(text, &mark, sizeof(mark));
+}
+
+/* Faces of three and four corners, and fields; in bytes, where a row begins nobody can say beforehand. */
+static void MakePly(Text *text, PetscInt n, PetscBool ascii)
+{
+  *text = (Text){.end = "\n"};
+  Line(text, "ply");
+  Line(text, "format %s 1.0", ascii ? "ascii" : "binary_little_endian");
+  Line(text, "element vertex %d", (int)(n * n));
+  Line(text, "property double x\nproperty double y\nproperty double z\nproperty uchar red");
+  Line(text, "element face %d", (int)((n - 1) * (n - 1) + (n - 1) * ((n - 1) / 2)));
+  Line(text, "property uchar flags\nproperty list uchar int vertex_indices\nproperty list uchar short marks");
+  Line(text, "end_header");
+  for (PetscInt i = 0; i < n * n; i++) {
+    const double x[3] = {(double)(i % n) / 3., (double)(i / n), .1 * (double)i};
+    const unsigned char red = (unsigned char)(i % 200);
+
+    if (ascii) Line(text, i % 7 ? "%.17g %.17g %.17g %d" : "%.17g\t%.17g  %.17g %d \n", x[0], x[1], x[2], red);
+    if (!ascii) Bytes(text, x, sizeof(x));
+    if (!ascii) Bytes(text, &red, 1);
+  }
+  for (PetscInt i = 0; i < (n - 1) * (n - 1); i++) {
+    const int a = (int)(i / (n - 1) * n + i % (n - 1)), b = a + 1, c = b + (int)n, d = a + (int)n;
+
+    if (i % (n - 1) % 2 == 0) {
+      PlyFace(text, ascii, 4, (const int[]){a, b, c, d}, (int)(i % 3));
+    } else {
+      PlyFace(text, ascii, 3, (const int[]){a, b, c}, 2);
+      PlyFace(text, ascii, 3, (const int[]){a, c, d}, 0);
+    }
+  }
+}
+
+static PetscErrorCode TestPly(Text *text)
+{
+  PetscFunctionBegin;
+  Name("ply");
+  for (PetscInt n = 3; n <= 23; n += 10) {
+    MakePly(text, n, PETSC_TRUE);
+    PetscCall(CheckRead(text, 3));
+    MakePly(text, n, PETSC_FALSE);
+    PetscCall(CheckRead(text, 3));
+  }
+  text->length -= 5;
+  PetscCall(CheckRefused(text, EQM_ERR_IO));
+  MakePly(text, 9, PETSC_TRUE);
+  text->length -= 12;
+  PetscCall(CheckRefused(text, EQM_ERR_IO));
+  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
+  PetscFunctionReturn(0);
+}
+
+/* What the writers make of surfaces with groups, textures without and with seams, and fields. */
+static PetscErrorCode TestWritten(Text *text)
+{
+  static const int kinds[] = {0, TEXTURE, TEXTURE | GROUPS | MIXED | QUADS};
+  static const char *const suffixes[] = {"ply", "text.ply", "stl"};
+
+  PetscFunctionBegin;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kinds); k++) {
+    EqmSoup soup;
+
+    MakeObjText(text, 19, kinds[k], "\n");
+    if (kinds[k] & GROUPS) memcpy(strstr(text->bytes + text->length / 2, "f "), "f 1/2", 5); /* a seam */
+    Name("obj");
+    PetscCall(WriteFile(file, text->bytes, text->length));
+    PetscCall(EqmSoupRead(PETSC_COMM_WORLD, file, &soup));
+    for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(suffixes); f++) {
+      Name(suffixes[f]);
+      PetscCall(EqmSoupWrite(soup, file));
+      PetscCall(CheckFile(-1));
+    }
+    PetscCall(EqmSoupDestroy(&soup));
+  }
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  static const char *const suffixes[] = {"obj", "ply", "text.ply", "stl"};
+  Text *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(EqmInitialize(&argc, &argv));
+  PetscCall(MakeFolder());
+  PetscCall(PetscMalloc1(1, &text));
+  PetscCall(TestPly(text));
+  PetscCall(TestWritten(text));
+  PetscCall(PetscFree(text));
+  PetscCall(RemoveFolder(PETSC_STATIC_ARRAY_LENGTH(suffixes), suffixes));
+  PetscCall(EqmFinalize());
+  PetscFunctionReturn(0);
+}
