@@ -5,11 +5,12 @@
 #include <string.h>
 #include <strings.h>
 
-/* EqmInputOpen - put the cursor at the beginning of `bytes`; messages will go to `error`. Not collective. */
+/* EqmInputOpen - put the cursor at the beginning of `bytes` (NULL: there are none); messages will go to `error`. Not
+   collective. */
 void EqmInputOpen(EqmInput *in, const char *bytes, size_t length, char *error, size_t error_length)
 {
-  in->start = in->cursor = bytes;
-  in->end = bytes + length;
+  in->start = in->cursor = bytes ? bytes : "";
+  in->end = in->start + (bytes ? length : 0);
   in->beside = in->beside_end = NULL;
   in->binary = PETSC_FALSE;
   in->error = error;

@@ -35,7 +35,7 @@ static PetscErrorCode ParseBinary(const EqmPartFile *file, PetscInt64 begin, Eqm
     if (fine && *understood) fine = ParseShare(builder->in, header, element, count, builder);
     PetscCall(PetscFree(part.bytes));
   }
-  EqmInputOpen(builder->in, "", 0, unused, 0);
+  EqmInputOpen(builder->in, NULL, 0, unused, 0);
   if (!fine) *understood = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -75,7 +75,7 @@ static PetscBool ParseLines(const EqmFilePart *part, PetscInt64 first, PetscInt6
     fine = ParseShare(builder->in, header, element, mine, builder);
     begin = end;
   }
-  EqmInputOpen(builder->in, "", 0, unused, 0);
+  EqmInputOpen(builder->in, NULL, 0, unused, 0);
   return fine;
 }
 

@@ -33,7 +33,7 @@ static PetscErrorCode ParseAscii(const EqmPartFile *file, EqmBuilder *builder, P
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &open_solids, 1, MPIU_INT64, MPI_SUM, file->comm));
   if (open_solids) *understood = PETSC_FALSE;
   PetscCall(PetscFree(part.bytes));
-  EqmInputOpen(builder->in, "", 0, builder->in->error, builder->in->error_length);
+  EqmInputOpen(builder->in, NULL, 0, builder->in->error, builder->in->error_length);
   PetscFunctionReturn(0);
 }
 
