@@ -39,7 +39,8 @@ PetscErrorCode EqmSolenoidalCreate(EqmProblem problem, EqmSolenoidal *out)
   PetscFunctionBegin;
   PetscCall(PetscNew(&space));
   space->problem = problem;
-  space->size = EQM_FIELDS_PER_SPLINE * NumberSplines(space->number);
+  space->num_splines = NumberSplines(space->number);
+  space->size = EQM_FIELDS_PER_SPLINE * space->num_splines;
   PetscCall(PetscMalloc3(space->size, &space->coefficient, NumParts(mesh) * space->size, &space->partial,
                          3 * mesh->num_local, &space->ambient));
   *out = space;
@@ -63,8 +64,8 @@ static inline PetscInt PlaceOf(const EqmSplines *s, PetscInt m)
 }
 
 /* sum += P^T a over vertices begin .. end - 1. */
-static void Restrict(EqmSolenoidal space, const PetscReal *x, const PetscReal *a, PetscInt begin, PetscInt end,
-                     PetscReal *sum)
+EQM_CLONES static void Restrict(EqmSolenoidal space, const PetscReal *x, const PetscReal *a, PetscInt begin,
+                                PetscInt end, PetscReal *sum)
 {
   for (PetscInt v = begin; v < end; v++) {
     PetscReal product[EQM_FIELDS_PER_SPLINE][EQM_SPLINES_AT_POINT];
@@ -74,30 +75,31 @@ static void Restrict(EqmSolenoidal space, const PetscReal *x, const PetscReal *a
     for (PetscInt m = 0; m < EQM_SPLINES_AT_POINT; m++) {
       const PetscInt which = space->number[PlaceOf(&s, m)];
       if (which < 0) continue;
-      for (PetscInt f = 0; f < EQM_FIELDS_PER_SPLINE; f++) sum[EQM_FIELDS_PER_SPLINE * which + f] += product[f][m];
+      for (PetscInt f = 0; f < EQM_FIELDS_PER_SPLINE; f++) sum[f * space->num_splines + which] += product[f][m];
     }
   }
 }
 
 /* a = P c at a vertex: sums of w x c_123 + (grad phi x x) c_4, w = grad((1 - |x|^2) phi). */
-static void Prolong(EqmSolenoidal space, const PetscReal x[3], const PetscReal *coefficient, PetscReal a[3])
+EQM_CLONES static void Prolong(EqmSolenoidal space, const PetscReal x[3], const PetscReal *coefficient, PetscReal a[3])
 {
   const PetscReal bubble = 1. - x[0] * x[0] - x[1] * x[1] - x[2] * x[2];
+  PetscReal c[EQM_FIELDS_PER_SPLINE][EQM_SPLINES_AT_POINT];
   PetscReal curl[3] = {0., 0., 0.}, potential[3] = {0., 0., 0.}, slope[3] = {0., 0., 0.};
   EqmSplines s;
 
   EqmSplinesAt(x, &s);
   for (PetscInt m = 0; m < EQM_SPLINES_AT_POINT; m++) {
     const PetscInt which = space->number[PlaceOf(&s, m)];
-    const PetscReal *const c = coefficient + EQM_FIELDS_PER_SPLINE * which;
-    const PetscReal gx = s.gradient[0][m], gy = s.gradient[1][m], gz = s.gradient[2][m];
-    if (which < 0) continue;
-    curl[0] += gy * c[2] - gz * c[1];
-    curl[1] += gz * c[0] - gx * c[2];
-    curl[2] += gx * c[1] - gy * c[0];
+    for (PetscInt f = 0; f < EQM_FIELDS_PER_SPLINE; f++)
+      c[f][m] = which < 0 ? 0. : coefficient[f * space->num_splines + which];
+  }
+  for (PetscInt m = 0; m < EQM_SPLINES_AT_POINT; m++) {
     for (PetscInt k = 0; k < 3; k++) {
-      potential[k] += s.value[m] * c[k];
-      slope[k] += s.gradient[k][m] * c[3];
+      const PetscInt i = (k + 1) % 3, j = (k + 2) % 3;
+      curl[k] += s.gradient[i][m] * c[j][m] - s.gradient[j][m] * c[i][m];
+      potential[k] += s.value[m] * c[k][m];
+      slope[k] += s.gradient[k][m] * c[3][m];
     }
   }
   for (PetscInt k = 0; k < 3; k++) {

@@ -3,7 +3,6 @@
 #include "problem/solenoidal_private.h"
 #include "domain/domain_private.h"
 #include "geometry/simplex.h"
-#include "linalg/dense.h"
 #include "mesh/mesh_private.h"
 #include <omp.h>
 #include <petscblaslapack.h>
@@ -111,18 +110,23 @@ static PetscScalar *BlockNewRow(Block *b)
 }
 
 /* Add the fields at a corner against a velocity there to a row. */
-static void AddCorner(const Range *range, const EqmSplines *s, const PetscReal *x, const PetscReal velocity[3],
-                      PetscScalar *row)
+EQM_CLONES static void AddCorner(const Range *range, const EqmSplines *s, const PetscReal *x,
+                                 const PetscReal velocity[3], PetscScalar *row)
 {
+  const PetscInt num_splines = range->width[0] * range->width[1] * range->width[2];
   PetscReal product[EQM_FIELDS_PER_SPLINE][EQM_SPLINES_AT_POINT];
   PetscInt offset[3];
 
   for (PetscInt k = 0; k < 3; k++) offset[k] = s->base[k] - 1 - range->begin[k];
   EqmSolenoidalAgainst(s, x, velocity, product);
-  for (PetscInt m = 0; m < EQM_SPLINES_AT_POINT; m++) {
-    const PetscInt i = offset[0] + m / 9, j = offset[1] + m / 3 % 3, k = offset[2] + m % 3;
-    const PetscInt spline = (range->width[1] * i + j) * range->width[2] + k;
-    for (PetscInt f = 0; f < EQM_FIELDS_PER_SPLINE; f++) row[EQM_FIELDS_PER_SPLINE * spline + f] += product[f][m];
+  for (PetscInt f = 0; f < EQM_FIELDS_PER_SPLINE; f++) {
+    for (PetscInt i = 0; i < 3; i++) {
+      for (PetscInt j = 0; j < 3; j++) {
+        PetscScalar *const to =
+            row + f * num_splines + (range->width[1] * (offset[0] + i) + offset[1] + j) * range->width[2] + offset[2];
+        for (PetscInt k = 0; k < 3; k++) to[k] += product[f][9 * i + 3 * j + k];
+      }
+    }
   }
 }
 
@@ -174,16 +178,18 @@ static void AddCell(const Galerkin *g, PetscInt cell, const Range *range, Block 
 }
 
 /* Which of all fields a block's are; -1: none. */
-static void NumberFields(const PetscInt *number, const Range *range, PetscInt *field)
+static void NumberFields(const EqmSolenoidal space, const Range *range, PetscInt *field)
 {
   PetscInt n = 0;
 
-  for (PetscInt i = 0; i < range->width[0]; i++) {
-    for (PetscInt j = 0; j < range->width[1]; j++) {
-      for (PetscInt k = 0; k < range->width[2]; k++) {
-        const PetscInt which = number[EqmSplinePlace(range->begin[0] + i, range->begin[1] + j, range->begin[2] + k)];
-        for (PetscInt f = 0; f < EQM_FIELDS_PER_SPLINE; f++)
-          field[n++] = which < 0 ? -1 : EQM_FIELDS_PER_SPLINE * which + f;
+  for (PetscInt f = 0; f < EQM_FIELDS_PER_SPLINE; f++) {
+    for (PetscInt i = 0; i < range->width[0]; i++) {
+      for (PetscInt j = 0; j < range->width[1]; j++) {
+        for (PetscInt k = 0; k < range->width[2]; k++) {
+          const PetscInt place = EqmSplinePlace(range->begin[0] + i, range->begin[1] + j, range->begin[2] + k);
+          const PetscInt which = space->number[place];
+          field[n++] = which < 0 ? -1 : f * space->num_splines + which;
+        }
       }
     }
   }
@@ -195,7 +201,7 @@ static void AddBlock(const EqmSolenoidal space, const Range *range, const Block 
   PetscInt field[EQM_FIELDS_PER_SPLINE * EQM_SPLINES];
   const PetscInt n = b->columns;
 
-  NumberFields(space->number, range, field);
+  NumberFields(space, range, field);
   for (PetscInt j = 0; j < n; j++) {
     if (field[j] < 0) continue;
     for (PetscInt i = j; i < n; i++) {

@@ -2,6 +2,7 @@
 #ifndef EQM_SOLENOIDAL_PRIVATE_H
 #define EQM_SOLENOIDAL_PRIVATE_H
 
+#include "linalg/dense_vectors.h"
 #include "problem/solenoidal.h"
 
 /* B-splines stand EQM_SPLINE_STEP apart, in a cube of EQM_SPLINE_SIDE of them each way around the ball; three each way
@@ -12,7 +13,8 @@ enum { EQM_SPLINE_SIDE = 9, EQM_SPLINES = 729, EQM_FIELDS_PER_SPLINE = 4, EQM_SP
 struct _p_EqmSolenoidal {
   EqmProblem problem;
   PetscInt number[EQM_SPLINES]; /* of those that reach into the ball, others: -1 */
-  PetscInt size;                /* fields in all */
+  PetscInt num_splines;         /* of these */
+  PetscInt size;                /* fields in all: the first of every spline, then the second, ... */
   PetscScalar *factor;          /* Cholesky's, size x size by columns; NULL before the first */
   PetscReal *coefficient, *partial;
   PetscReal *ambient; /* velocities in space, per local vertex */
@@ -26,7 +28,7 @@ typedef struct {
 
 /* In one direction: values and derivatives of three quadratic B-splines, the middle one `base` steps from the centre.
  */
-static inline PetscInt EqmSplinesAlong(PetscReal x, PetscReal value[3], PetscReal derivative[3])
+EQM_INLINE PetscInt EqmSplinesAlong(PetscReal x, PetscReal value[3], PetscReal derivative[3])
 {
   const PetscInt half = EQM_SPLINE_SIDE / 2, nearest = (PetscInt)PetscFloorReal(x / EQM_SPLINE_STEP + .5);
   const PetscInt base = PetscMax(1 - half, PetscMin(half - 1, nearest));
@@ -41,7 +43,7 @@ static inline PetscInt EqmSplinesAlong(PetscReal x, PetscReal value[3], PetscRea
   return base;
 }
 
-static inline void EqmSplinesAt(const PetscReal x[3], EqmSplines *s)
+EQM_INLINE void EqmSplinesAt(const PetscReal x[3], EqmSplines *s)
 {
   PetscReal v[3][3], d[3][3];
 
@@ -61,7 +63,7 @@ static inline void EqmSplinesAt(const PetscReal x[3], EqmSplines *s)
 }
 
 /* Place of a spline in the cube. */
-static inline PetscInt EqmSplinePlace(PetscInt i, PetscInt j, PetscInt k)
+EQM_INLINE PetscInt EqmSplinePlace(PetscInt i, PetscInt j, PetscInt k)
 {
   const PetscInt half = EQM_SPLINE_SIDE / 2;
 
@@ -70,8 +72,8 @@ static inline PetscInt EqmSplinePlace(PetscInt i, PetscInt j, PetscInt k)
 
 /* Velocities a at x, against the four fields of each spline there: with w = grad((1 - |x|^2) phi) the first three are
    w x e_k, whose products with a are a x w; the fourth is grad phi x x. */
-static inline void EqmSolenoidalAgainst(const EqmSplines *s, const PetscReal x[3], const PetscReal a[3],
-                                        PetscReal product[EQM_FIELDS_PER_SPLINE][EQM_SPLINES_AT_POINT])
+EQM_INLINE void EqmSolenoidalAgainst(const EqmSplines *s, const PetscReal x[3], const PetscReal a[3],
+                                     PetscReal product[EQM_FIELDS_PER_SPLINE][EQM_SPLINES_AT_POINT])
 {
   const PetscReal bubble = 1. - x[0] * x[0] - x[1] * x[1] - x[2] * x[2];
   const PetscReal turn[3] = {x[1] * a[2] - x[2] * a[1], x[2] * a[0] - x[0] * a[2], x[0] * a[1] - x[1] * a[0]};
