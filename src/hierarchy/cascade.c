@@ -10,6 +10,7 @@ PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options)
   *options = (EqmCascadeOptions){.epsilon = .1,
                                  .epsilon_finest = .1,
                                  .sweeps = 6,
+                                 .least_gain = .02,
                                  .steps = 1,
                                  .direct = 1500,
                                  .coarsest = 1000,
@@ -97,25 +98,30 @@ static PetscInt LevelsBelow(const EqmLevelMap *map, PetscInt left, PetscInt dire
 /* A level whose map has come back from the next coarser one; `left`: how many are below. */
 static PetscErrorCode RelaxLevel(EqmLevelMap *map, PetscInt left, const EqmCascadeOptions *options)
 {
-  enum { SWEEPS_AFTER = 2, MOST_STEPS = 60, WORK = 1000000 };
+  enum { MOST_STEPS = 60, WORK = 1000000 };
   const PetscInt below = LevelsBelow(map, left, options->direct);
   const EqmBalanceOptions direct = {.most_steps = PetscMin(MOST_STEPS, WORK / map->level->num_vertices + 1),
                                     .gain = 1e-3,
                                     .damping = .1},
                           multigrid = {.most_steps = options->steps, .gain = 1e-2, .damping = .03, .tolerance = .1};
   EqmLevelStars stars;
-  EqmLevelValue value;
+  EqmLevelValue first, value;
 
   PetscFunctionBegin;
   PetscCall(EqmLevelStarsCreate(map->level, &stars));
+  PetscCall(EqmLevelMapEvaluate(map, map->x, &first)); /* for its total, too */
+  value = first;
   for (PetscInt s = 0; s < options->sweeps; s += 2) {
-    PetscCall(EqmLevelMapEvaluate(map, map->x, &value)); /* for its total */
+    const PetscReal before = value.objective;
     PetscCall(EqmRelaxLevel(map, &stars, PetscMin(2, options->sweeps - s)));
+    PetscCall(EqmLevelMapEvaluate(map, map->x, &value));
+    if (value.objective > (1. - options->least_gain) * before) break;
   }
   PetscCall(Show(options, map, "sweeps", options->sweeps));
-  PetscCall(EqmBalanceLevel(map, below, below > 0 ? &multigrid : &direct));
+  if (below == 0 || value.objective <= (1. - options->least_gain) * first.objective)
+    PetscCall(EqmBalanceLevel(map, below, below > 0 ? &multigrid : &direct));
   PetscCall(Show(options, map, "steps", below));
-  PetscCall(EqmRelaxLevel(map, &stars, SWEEPS_AFTER));
+  PetscCall(EqmRelaxLevel(map, &stars, EQM_SWEEPS_AFTER));
   PetscCall(EqmLevelStarsDestroy(&stars));
   PetscFunctionReturn(0);
 }

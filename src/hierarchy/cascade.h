@@ -10,12 +10,15 @@ typedef enum { EQM_TARGET_DISK, EQM_TARGET_SQUARE, EQM_TARGET_SPHERE } EqmCascad
 typedef struct {
   PetscReal epsilon;        /* weight of the angle energy on all levels but the finest */
   PetscReal epsilon_finest; /* and on that */
-  PetscInt sweeps;          /* over the vertices of each level */
+  PetscInt sweeps;          /* over the vertices of each level, at most */
+  PetscReal least_gain;     /* by which share of the objective two sweeps must lower it that others follow, and all of
+                               them that steps follow, which sweeps cannot do for; 0: all are done */
   PetscInt steps;           /* Gauss-Newton steps by multigrid on each level */
   PetscInt direct;          /* levels with no more vertices have their matrices factored */
   PetscInt coarsest;        /* planar: a level with no more vertices is mapped first */
   PetscBool trace;          /* print a line per level */
 } EqmCascadeOptions;
+enum { EQM_SWEEPS_AFTER = 2 }; /* the steps */
 
 typedef struct {
   PetscInt folds; /* of the finest map: triangles that arithmetic cannot tell from folded ones included */

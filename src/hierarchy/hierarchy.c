@@ -8,12 +8,8 @@
 PetscErrorCode EqmHierarchyOptionsDefault(EqmHierarchyOptions *options)
 {
   PetscFunctionBegin;
-  *options = (EqmHierarchyOptions){.ratio = 2.5,
-                                   .coarsest = 4,
-                                   .boundary_share = 1.5,
-                                   .corner = NULL,
-                                   .gathered = 100000,
-                                   .vertices_of_piece = 16384};
+  *options = (EqmHierarchyOptions){
+      .ratio = 2.5, .coarsest = 4, .boundary_share = 1.5, .corner = NULL, .gathered = 20000, .vertices_of_piece = 8192};
   PetscFunctionReturn(0);
 }
 

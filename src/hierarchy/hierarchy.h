@@ -57,7 +57,8 @@ typedef struct {
   PetscReal boundary_share;   /* boundary vertices are kept so many that the piece between chord and arc of the unit
                                  circle is below half a triangle of the surface, times this factor */
   const PetscBool *corner;    /* per local vertex: must stay; NULL: none */
-  PetscInt gathered;          /* shared levels (hierarchy/shared.h): one with no more vertices goes to the first rank */
+  PetscInt gathered;          /* a mesh or a shared level (hierarchy/shared.h) with no more vertices goes to the first
+                                 rank */
   PetscInt vertices_of_piece; /* and their pieces have about so many */
 } EqmHierarchyOptions;
 

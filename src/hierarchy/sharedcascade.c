@@ -1,6 +1,6 @@
 /* The cascade on shared levels. */
 #include "hierarchy/sharedcascade.h"
-#include "hierarchy/sharedbalance.h"
+#include "hierarchy/sharedrelaxation.h"
 #include "base/rows.h"
 #include <math.h>
 
@@ -23,24 +23,13 @@ static PetscErrorCode Show(const EqmSharedLevel *shared, EqmLevelMap *map, const
 static PetscErrorCode RelaxLevel(EqmShared shared, PetscInt k, EqmCascadeTarget target,
                                  const EqmCascadeOptions *options, EqmLevelMap *map)
 {
-  enum { SWEEPS_AFTER = 2 };
-  const EqmBalanceOptions steps = {.most_steps = options->steps, .gain = 1e-2, .damping = .03, .tolerance = .1};
-  const EqmSharedLevel *const level = &shared->level[k];
-  EqmSharedStars stars;
-  EqmLevelValue value;
-  PetscInt iterations;
+  EqmSharedRelaxation relaxation;
 
   PetscFunctionBegin;
-  PetscCall(EqmSharedStarsCreate(level, &stars));
-  for (PetscInt s = 0; s < options->sweeps; s += 2) {
-    PetscCall(EqmSharedEvaluate(level, map, map->x, &value)); /* for its total */
-    PetscCall(EqmSharedRelax(level, map, &stars, PetscMin(2, options->sweeps - s)));
-  }
-  PetscCall(Show(level, map, "sweeps", options->sweeps, options));
-  PetscCall(EqmSharedBalance(shared, k, target, options->direct, &steps, map, &iterations));
-  PetscCall(Show(level, map, "cycles", iterations, options));
-  PetscCall(EqmSharedRelax(level, map, &stars, SWEEPS_AFTER));
-  PetscCall(EqmSharedStarsDestroy(&stars));
+  PetscCall(EqmSharedRelaxationCreate(shared, k, target, map, &relaxation));
+  PetscCall(EqmSharedRelaxationRun(relaxation, options));
+  PetscCall(EqmSharedRelaxationDestroy(&relaxation));
+  PetscCall(Show(&shared->level[k], map, "relaxed", 0, options));
   PetscFunctionReturn(0);
 }
 
@@ -101,22 +90,5 @@ PetscErrorCode EqmSharedCascade(EqmShared shared, EqmCascadeTarget target, const
   result->before = INFINITY;
   PetscCall(TakeFinest(shared, &map[0], x, result));
   PetscCall(EqmLevelMapDestroy(&map[0]));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EqmSharedCascadeRelax(EqmShared shared, EqmCascadeTarget target, const EqmCascadeOptions *options,
-                                     PetscReal *x, EqmCascadeResult *result)
-{
-  EqmLevelMap map;
-  EqmLevelValue value;
-
-  PetscFunctionBegin;
-  PetscCall(EqmSharedMapCreate(&shared->level[0], target, x, &map));
-  map.epsilon = options->epsilon_finest;
-  PetscCall(EqmSharedEvaluate(&shared->level[0], &map, map.x, &value));
-  result->before = value.objective;
-  if (value.folds == 0) PetscCall(RelaxLevel(shared, 0, target, options, &map));
-  PetscCall(TakeFinest(shared, &map, x, result));
-  PetscCall(EqmLevelMapDestroy(&map));
   PetscFunctionReturn(0);
 }

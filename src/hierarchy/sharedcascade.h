@@ -8,9 +8,5 @@
    `x`: per vertex of the mesh that this rank owns, those of boundary vertices set on entry. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedCascade(EqmShared shared, EqmCascadeTarget target,
                                              const EqmCascadeOptions *options, PetscReal *x, EqmCascadeResult *result);
-/* As EqmCascadeRelax. Collective. */
-PETSC_INTERN PetscErrorCode EqmSharedCascadeRelax(EqmShared shared, EqmCascadeTarget target,
-                                                  const EqmCascadeOptions *options, PetscReal *x,
-                                                  EqmCascadeResult *result);
 
 #endif

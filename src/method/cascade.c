@@ -1,19 +1,28 @@
 /* The cascade alone (docs/methods.md, Cascade): from the start of that name, relaxation of the mesh itself. One
    iteration is some Gauss-Seidel sweeps over the vertices, a Gauss-Newton step of areas with a little of the angles,
    ever less, solved to a tenth by multigrid on the hierarchy, and two sweeps more. No matrix is factored but a small
-   one. */
+   one. With a tolerance of the run's own it goes on to this. */
 #include "method/method.h"
 #include "domain/domain_private.h"
 #include "problem/levels.h"
 
 /* Weights of the angle energy, at first and at last; and when another iteration is not worth its time. */
 static const PetscReal first_epsilon = .01, last_epsilon = 1e-3, least_gain = .05;
-enum { SWEEPS = 2 };
+/* The same where the run is to go on: every iteration has a tenth of the one before down to the former, then only where
+   one has gained little, down to the latter, beside which rounding counts. */
+static const PetscReal soon_epsilon = 1e-4, least_epsilon = 1e-8;
+enum {
+  SWEEPS = 2,
+  MOST_USES = 4 /* relaxations in a row whose multigrid has the prolongations of one map */
+};
 
 typedef struct {
   EqmLevels *levels; /* the problem's */
+  EqmRelaxer relaxer;
+  EqmPlace image_of; /* the map that multigrid's prolongations are at */
+  PetscInt image_uses;
   EqmCascadeOptions options;
-  PetscReal epsilon; /* falls to `last_epsilon` where it gains little; then to zero: the end */
+  PetscReal epsilon; /* zero: the end */
 } Cascade;
 
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
@@ -31,9 +40,26 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(EqmCascadeOptionsDefault(&cascade->options));
   cascade->epsilon = first_epsilon;
   cascade->options.sweeps = SWEEPS;
+  cascade->options.least_gain = 0.;
   PetscCall(EqmProblemGetLevels(method->problem, &cascade->levels));
+  PetscCall(EqmLevelsCreateRelaxer(cascade->levels, &cascade->relaxer));
+  PetscCall(EqmPlaceCreate(method->problem->domain, &cascade->image_of));
+  cascade->image_uses = 0;
   iterate->objective = iterate->totals.energy;
   iterate->gradient_norm = -1.;
+  PetscFunctionReturn(0);
+}
+
+/* Prolongations at the present map, if those at hand have served long enough. */
+static PetscErrorCode PrepareImage(Cascade *cascade, EqmProblem problem, const EqmIterate iterate)
+{
+  PetscFunctionBegin;
+  if (cascade->image_uses % MOST_USES == 0) {
+    cascade->image_uses = 0;
+    PetscCall(EqmPlaceCopy(problem->domain, &iterate->place, &cascade->image_of));
+    PetscCall(EqmRelaxerSetImage(cascade->relaxer, &cascade->options, cascade->image_of.x));
+  }
+  cascade->image_uses++;
   PetscFunctionReturn(0);
 }
 
@@ -49,7 +75,8 @@ static PetscErrorCode Relax(Cascade *cascade, EqmProblem problem, EqmIterate ite
   PetscFunctionBegin;
   cascade->options.epsilon_finest = cascade->epsilon;
   PetscCall(EqmPlaceCreate(problem->domain, &trial));
-  PetscCall(EqmLevelsRelax(levels, &cascade->options, &iterate->place, &trial, &result));
+  PetscCall(PrepareImage(cascade, problem, iterate));
+  PetscCall(EqmLevelsRelax(levels, cascade->relaxer, &cascade->options, &iterate->place, &trial, &result));
   PetscCall(EqmPlaceMakeFrames(problem->domain, &trial));
   PetscCall(EqmImageFolds(problem->domain, &trial, iterate->image, &folds));
   PetscCall(EqmDomainBoundaryInOrder(problem->domain, &trial, better));
@@ -58,6 +85,16 @@ static PetscErrorCode Relax(Cascade *cascade, EqmProblem problem, EqmIterate ite
   if (*better) PetscCall(EqmPlaceCopy(problem->domain, &trial, &iterate->place));
   PetscCall(EqmPlaceDestroy(&trial));
   PetscFunctionReturn(0);
+}
+
+/* Zero: the end. */
+static PetscReal NextEpsilon(EqmMethod method, PetscReal epsilon, PetscBool gained)
+{
+  const PetscReal soon = method->goes_on ? soon_epsilon : last_epsilon, last = method->goes_on ? least_epsilon : soon;
+
+  if (epsilon > soon) return PetscMax(.1 * epsilon, soon);
+  if (gained) return epsilon;
+  return epsilon > last ? PetscMax(.1 * epsilon, last) : 0.;
 }
 
 static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
@@ -69,7 +106,7 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   while (!better && cascade->epsilon > 0.) {
     PetscBool gained;
     PetscCall(Relax(cascade, method->problem, iterate, &better, &gained));
-    if (!gained) cascade->epsilon = cascade->epsilon > last_epsilon ? last_epsilon : 0.;
+    cascade->epsilon = NextEpsilon(method, cascade->epsilon, gained);
   }
   PetscCall(EqmIterateUpdate(method->problem, iterate));
   iterate->objective = iterate->totals.energy;
@@ -83,9 +120,25 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
 
 static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
 {
+  Cascade *const cascade = method->data;
+
   PetscFunctionBegin;
   (void)iterate;
-  PetscCall(EqmStateReal(state, "angle_weight", &((Cascade *)method->data)->epsilon));
+  PetscCall(EqmStateReal(state, "angle_weight", &cascade->epsilon));
+  PetscCall(EqmStateInt(state, "image_uses", &cascade->image_uses));
+  if (cascade->image_uses == 0) PetscFunctionReturn(0);
+  PetscCall(EqmStatePlace(state, method->problem->domain, "image_of", &cascade->image_of));
+  if (EqmStateIsLoading(state)) PetscCall(EqmRelaxerSetImage(cascade->relaxer, &cascade->options, cascade->image_of.x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Reset(EqmMethod method)
+{
+  Cascade *const cascade = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmRelaxerDestroy(&cascade->relaxer));
+  if (cascade->image_of.x) PetscCall(EqmPlaceDestroy(&cascade->image_of));
   PetscFunctionReturn(0);
 }
 
@@ -97,6 +150,6 @@ PetscErrorCode EqmMethodCreateCascade(EqmMethod method)
   PetscCall(PetscNew(&cascade));
   method->data = cascade;
   method->purpose = "relaxation on a hierarchy of coarser meshes: a smooth map, areas good to a percent or two, soon";
-  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State};
+  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);
 }

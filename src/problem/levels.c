@@ -1,4 +1,5 @@
 #include "problem/levels.h"
+#include "hierarchy/sharedcascade.h"
 #include "linalg/onlevels.h"
 #include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
@@ -26,25 +27,34 @@ const char *EqmLevelsObstacleToLinear(EqmProblem problem)
   return EqmLevelsObstacle(problem);
 }
 
-/* `all_on_first`: however large the mesh is, all levels are on the first rank. */
-static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLevels *levels)
+/* The options of the problem's hierarchies; `corner` is new. */
+static PetscErrorCode MakeOptions(EqmProblem problem, EqmHierarchyOptions *options, PetscBool **corner)
 {
-  const EqmDomain domain = problem->domain;
   const EqmMesh mesh = problem->mesh;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(mesh->num_local, corner));
+  for (PetscInt v = 0; v < mesh->num_local; v++)
+    (*corner)[v] = (PetscBool)(EqmDomainMotion(problem->domain, v) == &EqmMotionCorner);
+  PetscCall(EqmHierarchyOptionsDefault(options));
+  options->corner = *corner;
+  PetscFunctionReturn(0);
+}
+
+/* `all_on_first`: however large the mesh is, all levels are on the first rank. Collective. */
+static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLevels **levels)
+{
   EqmHierarchyOptions options;
   PetscBool *corner;
 
   PetscFunctionBegin;
-  *levels = (EqmLevels){.problem = problem, .target = TargetOf(domain)};
-  PetscCall(PetscMalloc1(mesh->num_local, &corner));
-  for (PetscInt v = 0; v < mesh->num_local; v++)
-    corner[v] = (PetscBool)(EqmDomainMotion(domain, v) == &EqmMotionCorner);
-  PetscCall(EqmHierarchyOptionsDefault(&options));
-  options.corner = corner;
-  if (mesh->size > 1 && mesh->num_vertices > options.gathered && !all_on_first)
-    PetscCall(EqmSharedCreate(mesh, &options, &levels->shared));
+  PetscCall(PetscNew(levels));
+  **levels = (EqmLevels){.problem = problem, .target = TargetOf(problem->domain)};
+  PetscCall(MakeOptions(problem, &options, &corner));
+  if (all_on_first || problem->mesh->num_vertices <= options.gathered)
+    PetscCall(EqmHierarchyCreate(problem->mesh, &options, &(*levels)->hierarchy));
   else
-    PetscCall(EqmHierarchyCreate(mesh, &options, &levels->hierarchy));
+    PetscCall(EqmSharedCreate(problem->mesh, &options, &(*levels)->shared));
   PetscCall(PetscFree(corner));
   PetscFunctionReturn(0);
 }
@@ -52,10 +62,7 @@ static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLeve
 PetscErrorCode EqmProblemGetLevels(EqmProblem problem, EqmLevels **levels)
 {
   PetscFunctionBegin;
-  if (!problem->levels) {
-    PetscCall(PetscNew(&problem->levels));
-    PetscCall(Create(problem, PETSC_FALSE, problem->levels));
-  }
+  if (!problem->levels) PetscCall(Create(problem, PETSC_FALSE, &problem->levels));
   *levels = problem->levels;
   PetscFunctionReturn(0);
 }
@@ -80,24 +87,15 @@ PetscErrorCode EqmProblemCreateLinearOnLevels(EqmProblem problem, EqmLinear *lin
   PetscCall(EqmLinearDestroy(&problem->scalar));
   PetscCall(PetscFree(problem->scalar_count));
   if (problem->levels && problem->levels->shared) PetscCall(EqmProblemDropLevels(problem));
-  if (!problem->levels) {
-    PetscCall(PetscNew(&problem->levels));
-    PetscCall(Create(problem, PETSC_TRUE, problem->levels));
-  }
+  if (!problem->levels) PetscCall(Create(problem, PETSC_TRUE, &problem->levels));
   PetscCall(
       EqmLinearCreateOnLevels(problem->mesh, &unknowns, problem->levels->hierarchy, problem->levels->target, linear));
   PetscCall(EqmLinearDescribe(*linear, problem->linear_solver, sizeof(problem->linear_solver)));
   PetscFunctionReturn(0);
 }
 
-typedef PetscErrorCode (*OnFirstRank)(EqmHierarchy, EqmCascadeTarget, const EqmCascadeOptions *, PetscReal *,
-                                      EqmCascadeResult *);
-typedef PetscErrorCode (*OnAllRanks)(EqmShared, EqmCascadeTarget, const EqmCascadeOptions *, PetscReal *,
-                                     EqmCascadeResult *);
-
-/* Collective. */
-static PetscErrorCode Work(EqmLevels *levels, OnFirstRank first, OnAllRanks all, const EqmCascadeOptions *options,
-                           EqmPlace *place, EqmCascadeResult *result)
+PetscErrorCode EqmLevelsCascade(EqmLevels *levels, const EqmCascadeOptions *options, EqmPlace *place,
+                                EqmCascadeResult *result)
 {
   const EqmHierarchy hierarchy = levels->hierarchy;
   const PetscInt dim = levels->problem->domain->dim;
@@ -105,11 +103,11 @@ static PetscErrorCode Work(EqmLevels *levels, OnFirstRank first, OnAllRanks all,
 
   PetscFunctionBegin;
   if (levels->shared) {
-    PetscCall(all(levels->shared, levels->target, options, place->x, result));
+    PetscCall(EqmSharedCascade(levels->shared, levels->target, options, place->x, result));
   } else {
     PetscCall(PetscMalloc1(dim * hierarchy->level[0].num_vertices, &x));
     PetscCall(EqmHierarchyGather(hierarchy, dim, place->x, x));
-    PetscCall(first(hierarchy, levels->target, options, x, result));
+    PetscCall(EqmCascade(hierarchy, levels->target, options, x, result));
     PetscCall(EqmHierarchyScatter(hierarchy, dim, x, place->x));
     PetscCall(PetscFree(x));
   }
@@ -117,19 +115,21 @@ static PetscErrorCode Work(EqmLevels *levels, OnFirstRank first, OnAllRanks all,
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmLevelsCascade(EqmLevels *levels, const EqmCascadeOptions *options, EqmPlace *place,
-                                EqmCascadeResult *result)
+PetscErrorCode EqmLevelsCreateRelaxer(EqmLevels *levels, EqmRelaxer *relaxer)
 {
   PetscFunctionBegin;
-  PetscCall(Work(levels, EqmCascade, EqmSharedCascade, options, place, result));
+  PetscCall(EqmRelaxerCreate(levels->hierarchy, levels->shared, levels->target, relaxer));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmLevelsRelax(EqmLevels *levels, const EqmCascadeOptions *options, const EqmPlace *from, EqmPlace *to,
-                              EqmCascadeResult *result)
+PetscErrorCode EqmLevelsRelax(EqmLevels *levels, EqmRelaxer relaxer, const EqmCascadeOptions *options,
+                              const EqmPlace *from, EqmPlace *to, EqmCascadeResult *result)
 {
+  const PetscInt dim = levels->problem->domain->dim;
+
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(to->x, from->x, levels->problem->domain->dim * levels->problem->mesh->num_local));
-  PetscCall(Work(levels, EqmCascadeRelax, EqmSharedCascadeRelax, options, to, result));
+  PetscCall(PetscArraycpy(to->x, from->x, dim * levels->problem->mesh->num_local));
+  PetscCall(EqmRelaxerRun(relaxer, options, to->x, result));
+  PetscCall(EqmMeshUpdateGhosts(levels->problem->mesh, dim, to->x));
   PetscFunctionReturn(0);
 }

@@ -2,16 +2,15 @@
 #ifndef EQM_LEVELS_H
 #define EQM_LEVELS_H
 
-#include "hierarchy/sharedcascade.h"
+#include "hierarchy/relaxer.h"
 #include "problem/problem.h"
 
-/* On one rank, and from several for what one can hold, the hierarchy is on the first; else all ranks share its finest
-   levels. */
+/* One of the two: on the first rank, for small meshes and for linear solvers; or the finest levels on all ranks. */
 typedef struct EqmLevels {
   EqmProblem problem;
   EqmCascadeTarget target;
-  EqmHierarchy hierarchy; /* or NULL */
-  EqmShared shared;       /* or NULL */
+  EqmHierarchy hierarchy;
+  EqmShared shared;
 } EqmLevels;
 
 /* Why there can be none for this problem, as the end of a sentence about "it"; NULL: there can. Not collective. */
@@ -26,8 +25,10 @@ PETSC_INTERN PetscErrorCode EqmProblemCreateLinearOnLevels(EqmProblem problem, E
    chosen anew. Collective. */
 PETSC_INTERN PetscErrorCode EqmLevelsCascade(EqmLevels *levels, const EqmCascadeOptions *options, EqmPlace *place,
                                              EqmCascadeResult *result);
-/* EqmCascadeRelax on them, from one place to another. Collective. */
-PETSC_INTERN PetscErrorCode EqmLevelsRelax(EqmLevels *levels, const EqmCascadeOptions *options, const EqmPlace *from,
-                                           EqmPlace *to, EqmCascadeResult *result);
+/* Relax maps of the problem again and again (hierarchy/relaxer.h). Collective. */
+PETSC_INTERN PetscErrorCode EqmLevelsCreateRelaxer(EqmLevels *levels, EqmRelaxer *relaxer);
+/* EqmRelaxerRun from one place to another. Collective. */
+PETSC_INTERN PetscErrorCode EqmLevelsRelax(EqmLevels *levels, EqmRelaxer relaxer, const EqmCascadeOptions *options,
+                                           const EqmPlace *from, EqmPlace *to, EqmCascadeResult *result);
 
 #endif

@@ -10,6 +10,7 @@ static PetscErrorCode SetUpMethod(EqmSolver solver)
 {
   PetscFunctionBegin;
   solver->iterate->figures = EQM_STEP_UNKNOWN;
+  solver->method->goes_on = (PetscBool)(solver->settings.energy_target > 0. || solver->settings.energy_rtol > 0.);
   PetscCall(EqmMethodSetUp(solver->method, solver->problem, solver->iterate));
   PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_BEGIN, solver->problem->linear_solver));
   if (solver->checkpoints.open)

@@ -159,7 +159,8 @@ def check_methods(program):
             ("ball", "blob.msh", "ncg"), coarse)
     every = [(command, mesh, method) for command, mesh in MESHES for method in methods_of(program, command)]
     every += [("disk", "hills.obj", "ncg", "-ncg_refresh", 2), ("disk", "hills.obj", "lm", "-balance", .02),
-              ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang"), coarse]
+              ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang"), coarse,
+              ("disk", "shared.h5", "cascade", "-energy_target", 1e-30)]
     for command, mesh, method, *options in every if program.ranks == 1 else some:
         run = (command, mesh, "-method", method, *options, *ENDLESS)
         start = program.run(*run, "-max_it", 0, "-checkpoint", "start.ck", *outputs("start"))
@@ -398,6 +399,7 @@ def make_meshes(program):
     for shape, name, seed in (("hills", "hills.obj", 5), ("hills", "other.obj", 6), ("patch", "patch.obj", 1), ("head", "head.obj", 2),
                               ("blob", "blob.msh", 1)):
         program.succeed("generate", shape, "-n", 400, "-seed", seed, "-o", name, ranks=1)
+    program.succeed("generate", "hills", "-n", 21000, "-o", "shared.h5", ranks=1)  # beyond 20,000 all ranks share a hierarchy's levels
     program.cells = sum(line.startswith(b"f") for line in program.read("hills.obj").splitlines())
 
 

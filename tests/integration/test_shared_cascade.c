@@ -1,6 +1,7 @@
 /* Cascades on levels that all ranks share: no fold, as good as on one rank's own hierarchy, and the same map on any
    number of ranks and threads. */
 #include "support/testing.h"
+#include "hierarchy/relaxer.h"
 #include "hierarchy/sharedcascade.h"
 #include "mesh/mesh_private.h"
 #include <omp.h>
@@ -32,6 +33,7 @@ static PetscErrorCode Run(MPI_Comm comm, const char *shape, PetscInt n, EqmCasca
   EqmHierarchyOptions options;
   EqmCascadeOptions cascade;
   EqmHierarchy hierarchy;
+  EqmRelaxer relaxer;
   EqmShared levels;
   PetscBool *corner;
   PetscReal *x;
@@ -55,7 +57,9 @@ static PetscErrorCode Run(MPI_Comm comm, const char *shape, PetscInt n, EqmCasca
     CHECK(levels->num_levels > 2, "%d levels", (int)levels->num_levels);
     PetscCall(EqmSharedCascade(levels, target, &cascade, test->place.x, &test->result));
     cascade.epsilon_finest = .01;
-    PetscCall(EqmSharedCascadeRelax(levels, target, &cascade, test->place.x, &test->after));
+    PetscCall(EqmRelaxerCreate(NULL, levels, target, &relaxer));
+    PetscCall(EqmRelaxerRun(relaxer, &cascade, test->place.x, &test->after));
+    PetscCall(EqmRelaxerDestroy(&relaxer));
     PetscCall(EqmSharedDestroy(&levels));
   } else {
     PetscCall(EqmHierarchyCreate(test->mesh.mesh, &options, &hierarchy));

@@ -2,8 +2,9 @@
    solution, on any number of ranks and threads. */
 #include "support/testing.h"
 #include "base/rows.h"
-#include "hierarchy/sharedbalance.h"
+#include "hierarchy/balance.h"
 #include "hierarchy/sharedcascade.h"
+#include "hierarchy/sharedcycle.h"
 #include "mesh/mesh_private.h"
 #include <omp.h>
 
