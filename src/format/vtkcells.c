@@ -80,6 +80,7 @@ PetscErrorCode EqmBuilderAddVtkCells(EqmBuilder *builder, const EqmVtkCells *cel
 {
   PetscInt64 begin = 0;
 
+  EqmBuilderSetRow(builder, cells->first_row); /* a part of a file may have rows and no cell */
   for (PetscInt64 i = 0; i < cells->num_cells; ++i) {
     const PetscInt64 end = cells->end[i];
 

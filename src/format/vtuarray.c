@@ -217,45 +217,74 @@ static PetscErrorCode ReadBinary(Source *source, const char *format, PetscInt64 
   return code;
 }
 
-static PetscErrorCode ReadArray(const EqmVtuEncoding *encoding, xmlNodePtr node, PetscInt64 count, PetscReal *reals,
+/* EqmVtuCheckRoom - can the file hold so many numbers at all, however well they are packed? To be asked before memory
+   is taken for them. Not collective. Errors: EQM_ERR_IO (quiet). */
+PetscErrorCode EqmVtuCheckRoom(const EqmVtuEncoding *encoding, xmlNodePtr node, PetscInt64 count)
+{
+  if (count >= 0 && (size_t)count <= (encoding->compressed ? 1032 : 1) * encoding->file_bytes) return 0;
+  return EqmXmlReject(encoding->in, node,
+                      "%lld numbers are announced, but the file is too short for them: it is truncated",
+                      (long long)count);
+}
+
+/* Numbers of which the other ranks read theirs. */
+static PetscErrorCode ReadRange(const EqmVtuEncoding *encoding, xmlNodePtr node, EqmVtuRange range, PetscReal *reals,
+                                PetscInt64 *integers)
+{
+  Content content;
+  char *bytes;
+  PetscErrorCode code;
+
+  EqmTry(ParseType(encoding, node, &content.type));
+  EqmTry(EqmVtuCheckRoom(encoding, node, range.total));
+  code = EqmVtuLoadRange(encoding, node, EqmScalarSize(content.type), range, &bytes);
+  content.bytes = bytes;
+  if (!code) Convert(encoding, &content, range.count, reals, integers);
+  EqmTry(PetscFree(bytes));
+  return code;
+}
+
+static PetscErrorCode ReadArray(const EqmVtuEncoding *encoding, xmlNodePtr node, EqmVtuRange range, PetscReal *reals,
                                 PetscInt64 *integers)
 {
   Source source = {.encoding = encoding, .node = node};
   PetscErrorCode code;
   char format[16];
 
+  if (encoding->file) return ReadRange(encoding, node, range, reals, integers);
   EqmXmlAttribute(node, "format", format, sizeof(format));
   EqmXmlGetText(node, &source.text);
-  code = strcmp(format, "ascii") ? ReadBinary(&source, format, count, reals, integers)
-                                 : EqmXmlParseNumbers(encoding->in, node, &source.text, count, reals, integers);
+  code = strcmp(format, "ascii") ? ReadBinary(&source, format, range.total, reals, integers)
+                                 : EqmXmlParseNumbers(encoding->in, node, &source.text, range.total, reals, integers);
   EqmXmlTextReset(&source.text);
   return code;
 }
 
-/* EqmVtuCheckRoom - can the file hold so many numbers at all, however well they are packed? To be asked before memory
-   is taken for them. Not collective. Errors: EQM_ERR_IO (quiet). */
-PetscErrorCode EqmVtuCheckRoom(const EqmVtuEncoding *encoding, xmlNodePtr node, PetscInt64 count)
+/* EqmVtuShare - the numbers of an array of that many rows, `width` each, that are to be read here. Not collective. */
+EqmVtuRange EqmVtuShare(const EqmVtuEncoding *encoding, PetscInt64 num_rows, PetscInt64 width)
 {
-  const size_t file_bytes = (size_t)(encoding->in->end - encoding->in->start);
+  EqmVtuRange range = {width * num_rows, 0, width * num_rows};
 
-  if (count >= 0 && (size_t)count <= (encoding->compressed ? 1032 : 1) * file_bytes) return 0;
-  return EqmXmlReject(encoding->in, node,
-                      "%lld numbers are announced, but the file is too short for them: it is truncated",
-                      (long long)count);
+  if (encoding->file) {
+    EqmPartFileShare(encoding->file, num_rows, &range.first, &range.count);
+    range.first *= width;
+    range.count *= width;
+  }
+  return range;
 }
 
-/* EqmVtuReadReals - the `count` numbers of a DataArray. Not collective. Errors: EQM_ERR_IO (quiet). */
-PetscErrorCode EqmVtuReadReals(const EqmVtuEncoding *encoding, xmlNodePtr node, PetscInt64 count, PetscReal *values)
+/* EqmVtuReadReals - numbers of a DataArray; where it is in memory, all. Not collective. Errors: EQM_ERR_IO (quiet). */
+PetscErrorCode EqmVtuReadReals(const EqmVtuEncoding *encoding, xmlNodePtr node, EqmVtuRange range, PetscReal *values)
 {
-  return ReadArray(encoding, node, count, values, NULL);
+  return ReadArray(encoding, node, range, values, NULL);
 }
 
-/* EqmVtuReadIntegers - the `count` whole numbers of a DataArray, into memory that is taken here and freed by the
-   caller, also after a failure. Not collective. Errors: EQM_ERR_IO (quiet). */
-PetscErrorCode EqmVtuReadIntegers(const EqmVtuEncoding *encoding, xmlNodePtr node, PetscInt64 count,
+/* EqmVtuReadIntegers - whole numbers of a DataArray, into memory that is taken here and freed by the caller, also after
+   a failure; where it is in memory, all. Not collective. Errors: EQM_ERR_IO (quiet). */
+PetscErrorCode EqmVtuReadIntegers(const EqmVtuEncoding *encoding, xmlNodePtr node, EqmVtuRange range,
                                   PetscInt64 **values)
 {
-  EqmTry(EqmVtuCheckRoom(encoding, node, count));
-  EqmTry(PetscMalloc1(count + 1, values));
-  return ReadArray(encoding, node, count, NULL, *values);
+  EqmTry(EqmVtuCheckRoom(encoding, node, range.total));
+  EqmTry(PetscMalloc1(range.count + 1, values));
+  return ReadArray(encoding, node, range, NULL, *values);
 }
