@@ -200,8 +200,8 @@ def check_nan(program, every):
     for method in ("lm", "lbfgs", "rgd", "fixed-point", "ncg"):
         run = ("disk", "hills.obj", "-method", method, "-max_it", 12, "-o", "out.h5", "-summary", "out.json")
         sums = program.count(run)[2]
-        measured = range(sums - 15, sums + 1) if method == "lm" else ()  # the figures of the result are the last
-        for k in sorted({*range(1, sums + 1, 1 if every else max(1, sums // 6)), *measured}):
+        measured = range(sums - 15, sums + 1, 1 if every else 3) if method == "lm" else ()  # the figures of the result are the last
+        for k in sorted({*range(1, sums + 1, 1 if every else max(1, sums // 4)), *measured}):
             result = program.fault(run, nan=k)
             text = f"{method}, sum {k} of {sums}: exit code {result.returncode}\n{result.stdout}{result.stderr}"
             assert result.returncode in (0, 1, 4, 5), text
@@ -287,7 +287,7 @@ def main():
     every = sys.argv[3:] == ["every"]
     with tempfile.TemporaryDirectory() as folder:
         program = Faults(equimap, library, ranks, folder)
-        checks = [(check_dead_rank,), (check_terms, every), (check_allocations, 0 if every else 6 if ranks == 1 else 2)]
+        checks = [(check_dead_rank,), (check_terms, every), (check_allocations, 0 if every else 3 if ranks == 1 else 2)]
         if ranks == 1:
             checks = [(check_disks,), (check_two_runs,), (check_memory_limits,), (check_nan, every), *checks[1:]]
         for check, *more in checks:

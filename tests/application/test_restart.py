@@ -1,6 +1,6 @@
-"""Runs that are interrupted and go on: test_restart.py PROGRAM [RANKS [KILLS | pairs | overhead]]. With KILLS: only so many runs
-that are killed at random moments, on 1, 2 and 3 ranks in turn; pairs: only runs that begin on 1, 2 or 3 ranks and end on 1, 2 or 3;
-overhead: only what checkpoints cost.
+"""Runs that are interrupted and go on: test_restart.py PROGRAM [RANKS [KILLS | pairs | overhead | methods]]. With KILLS: only so many
+runs that are killed at random moments, on 1, 2 and 3 ranks in turn; pairs: only runs that begin on 1, 2 or 3 ranks and end on 1, 2
+or 3; overhead: only what checkpoints cost; methods: only every method of every command.
 Where one rank writes what another reads the figures agree to the solver's tolerance; on the same number of ranks to the last
 bit."""
 import csv
@@ -152,15 +152,16 @@ def methods_of(program, command):
     raise AssertionError(f"{command} --help says nothing of -method")
 
 
-def check_methods(program):
-    """Every method of every command goes on to the last bit; on several ranks, one of each kind."""
+def check_methods(program, all_of_them=False):
+    """Methods go on to the last bit: one of each kind, on one rank all of the disk; all of every command."""
     coarse = ("ball", "blob.msh", "lbfgs", "-linear_solver", "multigrid", "-lbfgs_refresh", 2)  # coarse spaces older than the metric
     some = (("disk", "hills.obj", "rgd"), ("disk", "hills.obj", "lm"), ("sphere", "head.obj", "lbfgs"), ("ball", "blob.msh", "newton"),
             ("ball", "blob.msh", "ncg"), coarse)
-    every = [(command, mesh, method) for command, mesh in MESHES for method in methods_of(program, command)]
+    every = [(command, mesh, method) for command, mesh in MESHES[:None if all_of_them else 1] for method in methods_of(program, command)]
     every += [("disk", "hills.obj", "ncg", "-ncg_refresh", 2), ("disk", "hills.obj", "lm", "-balance", .02),
-              ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang"), coarse,
+              ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang"),
               ("disk", "shared.h5", "cascade", "-energy_target", 1e-30)]
+    every += [coarse] if all_of_them else [run for run in some if run[0] != "disk"]
     for command, mesh, method, *options in every if program.ranks == 1 else some:
         run = (command, mesh, "-method", method, *options, *ENDLESS)
         start = program.run(*run, "-max_it", 0, "-checkpoint", "start.ck", *outputs("start"))
@@ -408,12 +409,14 @@ def main():
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
         make_meshes(program)
         if sys.argv[3:]:
-            alone = {"pairs": check_all_pairs, "overhead": check_overhead}
+            alone = {"pairs": check_all_pairs, "overhead": check_overhead, "methods": lambda program: check_methods(program, True)}
             alone.get(sys.argv[3], lambda program: check_many_kills(program, int(sys.argv[3])))(program)
             return 0
         check_kills(program, program.ranks, 4, random.Random(program.ranks))
-        for check in (check_methods, check_other_ranks, check_damage, check_foreign, check_kept_mesh, check_finished, check_stopping, check_register,
-                      check_full_disk):
+        checks = [check_methods, check_other_ranks, check_kept_mesh, check_stopping, check_register]
+        if program.ranks != 2:  # one rank alone reads and writes here
+            checks += [check_damage, check_foreign, check_finished, check_full_disk]
+        for check in checks:
             begun = time.time()
             check(program)
             print(f"{check.__name__[6:]}: {time.time() - begun:.1f} s", flush=True)
