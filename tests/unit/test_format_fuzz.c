@@ -5,7 +5,6 @@
 #include "format_samples.h"
 #include "mutations.h"
 #include "support/checks.h"
-#include "support/mutate.h"
 
 #define MUTATIONS 600 /* of each sample and rank */
 
