@@ -32,35 +32,16 @@ static PetscErrorCode ParseBlockHeader(EqmGmsh *gmsh, PetscInt64 *dimension, Pet
   return EqmGmshReadCount(gmsh, EQM_SCALAR_UINT64, "the length of a block", 2, count);
 }
 
-/* Parametric coordinates, which follow the coordinates of a node: one on curves, two on surfaces. */
-static PetscErrorCode SkipParameters(EqmGmsh *gmsh, PetscInt64 dimension)
-{
-  const char *skipped;
-
-  if (gmsh->ascii) {
-    EqmSkipLine(gmsh->in);
-    return 0;
-  }
-  return EqmTakeBytes(gmsh->in, 8 * (size_t)PetscMax(0, PetscMin(dimension, 3)), "parametric coordinates", &skipped);
-}
-
 static PetscErrorCode ParseNodeBlock(EqmGmsh *gmsh, PetscInt64 *missing)
 {
-  PetscInt64 dimension, unused, parametric, count;
-  PetscReal *x;
+  EqmGmshRun run = {.kind = gmsh->version_4_0 ? EQM_GMSH_NODES : EQM_GMSH_POINTS};
+  PetscInt64 unused;
 
-  EqmTry(ParseBlockHeader(gmsh, &dimension, &unused, &parametric, &count));
-  if (count > *missing) return EqmReject(gmsh->in, EQM_ERR_IO, "the blocks have more nodes than the section");
-  *missing -= count;
-  for (PetscInt64 i = 0; i < count && !gmsh->version_4_0; ++i) EqmTry(EqmGmshReadTag(gmsh, EQM_SCALAR_UINT64));
-  EqmTry(EqmBuilderAddVertices(&gmsh->builder, (size_t)count, &x));
-  for (PetscInt64 i = 0; i < count; ++i) {
-    if (gmsh->version_4_0) EqmTry(EqmGmshReadTag(gmsh, EQM_SCALAR_INT32));
-    if (gmsh->ascii) EqmSkipSpace(gmsh->in, 0);
-    EqmTry(EqmGmshReadPoint(gmsh, x + 3 * i));
-    if (parametric) EqmTry(SkipParameters(gmsh, dimension));
-  }
-  return 0;
+  EqmTry(ParseBlockHeader(gmsh, &run.dimension, &unused, &run.parametric, &run.count));
+  if (run.count > *missing) return EqmReject(gmsh->in, EQM_ERR_IO, "the blocks have more nodes than the section");
+  *missing -= run.count;
+  if (!gmsh->version_4_0) EqmTry(EqmGmshReadRows(gmsh, &(EqmGmshRun){.kind = EQM_GMSH_TAGS}, run.count));
+  return EqmGmshReadRows(gmsh, &run, run.count);
 }
 
 /* EqmGmshParseNodes4 - the section $Nodes of versions 4.1 and 4.0. Not collective. Errors: EQM_ERR_IO (quiet). */
@@ -78,18 +59,12 @@ PetscErrorCode EqmGmshParseNodes4(EqmGmsh *gmsh)
 
 static PetscErrorCode ParseElementBlock(EqmGmsh *gmsh)
 {
-  const EqmScalarType index = gmsh->version_4_0 ? EQM_SCALAR_INT32 : EQM_SCALAR_UINT64;
-  PetscInt64 dimension, entity, type, count, tag;
-  PetscInt num_nodes;
+  EqmGmshRun run = {.kind = EQM_GMSH_ELEMENTS};
+  PetscInt64 entity;
 
-  EqmTry(ParseBlockHeader(gmsh, &dimension, &entity, &type, &count));
-  EqmBuilderSetGroup(&gmsh->builder, EqmGmshGroupOf(gmsh, dimension, entity));
-  EqmTry(EqmGmshNodesOfType(gmsh, type, &num_nodes));
-  for (PetscInt64 i = 0; i < count; ++i) {
-    EqmTry(EqmGmshReadInteger(gmsh, index, "the tag of an element", &tag));
-    EqmTry(EqmGmshReadElement(gmsh, type, num_nodes, index));
-  }
-  return 0;
+  EqmTry(ParseBlockHeader(gmsh, &run.dimension, &entity, &run.type, &run.count));
+  run.group = EqmGmshGroupOf(gmsh, run.dimension, entity);
+  return EqmGmshReadRows(gmsh, &run, run.count);
 }
 
 /* EqmGmshParseElements4 - the section $Elements of versions 4.1 and 4.0. Not collective. Errors: EQM_ERR_IO (quiet). */

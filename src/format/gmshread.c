@@ -71,6 +71,7 @@ PetscErrorCode EqmGmshCloseNodes(EqmGmsh *gmsh)
 
   EqmTry(EqmTagMapClose(&gmsh->tags, &repeated));
   if (repeated >= 0) return EqmReject(gmsh->in, EQM_ERR_IO, "two nodes have the tag %lld", (long long)repeated);
+  gmsh->num_nodes = (PetscInt64)gmsh->builder.num_vertices;
   return 0;
 }
 
@@ -104,6 +105,17 @@ static PetscInt DimensionOf(PetscInt64 type)
   return 3;
 }
 
+/* An element names the node of that tag. */
+static PetscErrorCode NoteName(EqmGmsh *gmsh, PetscInt64 tag)
+{
+  if (gmsh->num_named == gmsh->named_capacity) {
+    gmsh->named_capacity = PetscMax(1024, gmsh->named_capacity + gmsh->named_capacity / 2);
+    EqmTry(PetscRealloc(sizeof(PetscInt64) * (size_t)gmsh->named_capacity, &gmsh->named));
+  }
+  gmsh->named[gmsh->num_named++] = tag;
+  return 0;
+}
+
 /* EqmGmshReadElement - the nodes of an element: kept for triangles, quadrilaterals and tetrahedra, skipped for others.
    Not collective. Errors: EQM_ERR_IO (quiet) for a node that is not there. */
 PetscErrorCode EqmGmshReadElement(EqmGmsh *gmsh, PetscInt64 type, PetscInt num_nodes, EqmScalarType index)
@@ -116,15 +128,17 @@ PetscErrorCode EqmGmshReadElement(EqmGmsh *gmsh, PetscInt64 type, PetscInt num_n
 
   for (PetscInt k = 0; k < num_nodes; ++k) {
     EqmTry(EqmGmshReadInteger(gmsh, index, "a node of an element", &tag));
-    if (!wanted) continue;
+    if (wanted && gmsh->names_only) EqmTry(NoteName(gmsh, tag));
+    if (!wanted || gmsh->names_only) continue;
     corner[k] = EqmTagMapFind(&gmsh->tags, tag);
     if (corner[k] < 0) {
       return EqmRejectAt(gmsh->in, position, EQM_ERR_IO,
                          "an element names node %lld, which is out of range: no node has this tag", (long long)tag);
     }
   }
+  if (gmsh->names_only) return 0;
   if (wanted && type != GMSH_TETRAHEDRON)
-    return EqmBuilderAddFace(&gmsh->builder, position, (PetscInt64)gmsh->builder.num_vertices, num_nodes, corner);
+    return EqmBuilderAddFace(&gmsh->builder, position, gmsh->num_nodes, num_nodes, corner);
   if (wanted) {
     EqmTry(EqmBuilderAddCells(&gmsh->builder, 4, 1, &cell));
     for (int k = 0; k < 4; ++k) cell[k] = (PetscInt)corner[k];

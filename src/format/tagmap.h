@@ -16,6 +16,13 @@ PETSC_INTERN PetscErrorCode EqmTagMapReserve(EqmTagMap *map, size_t count);
 PETSC_INTERN void EqmTagMapAdd(EqmTagMap *map, PetscInt64 tag);
 PETSC_INTERN PetscErrorCode EqmTagMapClose(EqmTagMap *map, PetscInt64 *repeated);
 PETSC_INTERN PetscInt EqmTagMapFind(const EqmTagMap *map, PetscInt64 tag);
+/* EqmTagMapShare - from the tags of this rank's vertices, which have not been closed, to a map of those of all ranks.
+   Collective. consecutive - false: the map remains as it is, and EqmTagMapShareNamed must follow, which makes one of
+   the vertices that have one of the `num_named` tags `named` (sorted here). success - false on every rank if there are
+   more vertices than PetscInt can count, or two have the same tag. */
+PETSC_INTERN PetscErrorCode EqmTagMapShare(MPI_Comm comm, EqmTagMap *map, PetscBool *consecutive, PetscBool *success);
+PETSC_INTERN PetscErrorCode EqmTagMapShareNamed(MPI_Comm comm, EqmTagMap *map, PetscInt64 num_named, PetscInt64 *named,
+                                                PetscBool *success);
 PETSC_INTERN PetscErrorCode EqmTagMapReset(EqmTagMap *map);
 
 #endif

@@ -283,7 +283,8 @@ static void MakeGmsh4(Sample *samples, int *count, int binary, int big, PetscInt
   }
   Put(s, "%s$EndNodes\n$Elements\n", binary ? "\n" : "");
   PutGmsh4Numbers(s, binary, big, "8888", 2, num_cells + 1, 1, num_cells + 1);
-  PutGmsh4Numbers(s, binary, big, "444888", 0, 1, 15, 1, 1, Tag(0));
+  PutGmsh4Numbers(s, binary, big, "4448", 0, 1, 15, 1);
+  PutGmsh4Numbers(s, binary, big, "88", 1, Tag(0));
   PutGmsh4Numbers(s, binary, big, "4448", size - 1, 1, size == 3 ? 2 : 4, num_cells);
   for (int i = 0; i < num_cells; ++i) {
     const int *cell = cells + size * i;

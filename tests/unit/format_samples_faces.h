@@ -46,7 +46,8 @@ static void MakeOtherGmsh(Sample *samples, int *count, int binary)
     if (binary) PutNumber(s, 4, 0, 1);
     Put(s, "%s$EndMeshFormat\n%s\n%s", binary ? "\n" : "", version == 2 ? "$ParametricNodes" : "$Nodes",
         version == 2 ? "5\n" : "");
-    if (version == 4) PutGmsh4Numbers(s, binary, 0, "884448", 1, 5, 1, 2, 1, 5);
+    if (version == 4) PutGmsh4Numbers(s, binary, 0, "88", 1, 5);
+    if (version == 4) PutGmsh4Numbers(s, binary, 0, "4448", 1, 2, 1, 5);
     for (int i = 0; i < 5; ++i) {
       const double *const x = sample_vertices + 3 * i;
       const int dimension = version == 2 ? i % 4 : 2;
@@ -61,7 +62,8 @@ static void MakeOtherGmsh(Sample *samples, int *count, int binary)
     }
     Put(s, "%s%s\n$Elements\n%s", binary ? "\n" : "", version == 2 ? "$EndParametricNodes" : "$EndNodes",
         version == 2 ? "4\n" : "");
-    if (version == 4) PutGmsh4Numbers(s, binary, 0, "884448", 1, 4, 1, 2, 2, 4);
+    if (version == 4) PutGmsh4Numbers(s, binary, 0, "88", 1, 4);
+    if (version == 4) PutGmsh4Numbers(s, binary, 0, "4448", 1, 2, 2, 4);
     if (version == 2 && binary) PutGmsh4Numbers(s, binary, 0, "444", 2, 4, 0);
     for (int i = 0; i < 4; ++i) {
       const int *const cell = sample_triangles + 3 * i;

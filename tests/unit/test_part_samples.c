@@ -8,7 +8,7 @@ enum { MUTATIONS = 40, CUTS = 12 }; /* of each sample */
 
 /* Samples that one rank reads alone, by their names' beginnings: arrays of text, several pieces, sets of texture
    coordinates of two kinds, numbers that do not keep to lines. */
-static const char *const left_alone[] = {"PLY with texture points", "VTU ASCII"};
+static const char *const left_alone[] = {"PLY with texture points", "VTU ASCII", "MSH 2.2 binary, parameters"};
 
 static PetscBool IsLeftAlone(const char *name)
 {
