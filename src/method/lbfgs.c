@@ -36,6 +36,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 
   PetscFunctionBegin;
   PetscCall(EqmMetricCreate(method->problem, &lb->metric));
+  if (lb->refresh < 0) lb->refresh = EqmMetricIsCycle(lb->metric) ? 20 : 10;
   PetscCall(EqmPlaceCreate(method->problem->domain, &lb->trial));
   PetscCall(PetscMalloc1(method->problem->mesh->num_local_cells, &lb->image));
   PetscCall(EqmDomainCreateVec(method->problem->domain, &lb->gradient));
@@ -165,8 +166,9 @@ static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOp
   PetscFunctionBegin;
   PetscCall(PetscOptionsBoundedInt(
       "-lbfgs_refresh",
-      "lbfgs: renew the metric after so many iterations, then each time after twice as many; 0: never",
-      "EqmSolverSetFromOptions", lb->refresh, &lb->refresh, NULL, 0));
+      "lbfgs: renew the metric after so many iterations, then each time after twice as many; 0: never, -1: 10, with "
+      "multigrid 20",
+      "EqmSolverSetFromOptions", lb->refresh, &lb->refresh, NULL, -1));
   PetscCall(PetscOptionsBoundedInt("-lbfgs_memory", "lbfgs: how many steps are remembered", "EqmSolverSetFromOptions",
                                    lb->memory, &lb->memory, NULL, 1));
   PetscCall(PetscOptionsEnum("-lbfgs_line_search", "lbfgs: when a step is long enough", "EqmSolverSetFromOptions",
@@ -195,7 +197,8 @@ PetscErrorCode EqmMethodCreateLbfgs(EqmMethod method)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&lb));
-  lb->refresh = lb->memory = 10;
+  lb->refresh = -1;
+  lb->memory = 10;
   method->data = lb;
   method->purpose = "limited-memory quasi-Newton steps in the Laplacian metric: scalar factorisations only";
   method->takes_terms = PETSC_TRUE;

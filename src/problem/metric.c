@@ -180,6 +180,11 @@ PetscErrorCode EqmMetricRefresh(EqmMetric metric, const EqmPlace *place)
   PetscFunctionReturn(0);
 }
 
+PetscBool EqmMetricIsCycle(EqmMetric metric)
+{
+  return (PetscBool)(metric->gauss_newton && EqmLinearHasCoarseSpaces(metric->gauss_newton));
+}
+
 PetscErrorCode EqmMetricState(EqmMetric metric, EqmState state)
 {
   const EqmDomain domain = metric->problem->domain;
@@ -189,8 +194,7 @@ PetscErrorCode EqmMetricState(EqmMetric metric, EqmState state)
   if (metric->gauss_newton) PetscCall(EqmStatePlace(state, domain, "coarse_spaces_of", &metric->coarse_at));
   if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
   metric->keeps_coarse = PETSC_FALSE;
-  if (metric->gauss_newton && EqmLinearHasCoarseSpaces(metric->gauss_newton))
-    PetscCall(FactorAt(metric, &metric->coarse_at));
+  if (EqmMetricIsCycle(metric)) PetscCall(FactorAt(metric, &metric->coarse_at));
   PetscCall(FactorAt(metric, &metric->at));
   PetscFunctionReturn(0);
 }

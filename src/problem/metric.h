@@ -13,6 +13,8 @@ PETSC_INTERN PetscErrorCode EqmMetricDestroy(EqmMetric *metric);
 PETSC_INTERN PetscErrorCode EqmMetricRefresh(EqmMetric metric, const EqmPlace *place);
 /* h = M^-1 g; both in degrees of freedom at the given map; may be the same. Collective. */
 PETSC_INTERN PetscErrorCode EqmMetricApply(EqmMetric metric, const EqmPlace *place, Vec g, Vec h);
+/* Is it applied as a cycle of multigrid, whose set-up takes as long as some eight iterations? Not collective. */
+PETSC_INTERN PetscBool EqmMetricIsCycle(EqmMetric metric);
 /* For the `state` of a method that keeps a metric over several steps. Collective. */
 PETSC_INTERN PetscErrorCode EqmMetricState(EqmMetric metric, EqmState state);
 
