@@ -1,4 +1,5 @@
 #include "method/pairs.h"
+#include "base/vectors.h"
 
 struct _p_EqmPairs {
   PetscInt most, count, oldest; /* a ring: pair k, from the oldest, is at (oldest + k) % most */
@@ -72,7 +73,7 @@ PetscErrorCode EqmPairsAdd(EqmPairs pairs, PetscReal scale, Vec step, Vec old_gr
   PetscCall(VecCopy(step, pairs->step[place]));
   PetscCall(VecScale(pairs->step[place], scale));
   PetscCall(VecWAXPY(pairs->change[place], -1., old_gradient, new_gradient));
-  PetscCall(VecMDot(pairs->change[place], last + 1, List(pairs, pairs->step, last + 1), pairs->dot));
+  PetscCall(EqmVecProducts(pairs->change[place], last + 1, List(pairs, pairs->step, last + 1), pairs->dot));
   if (!(pairs->dot[last] > 0.)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k <= last; k++) *Product(pairs, k, last) = pairs->dot[k];
   pairs->count++;
@@ -92,19 +93,19 @@ PetscErrorCode EqmPairsDirection(EqmPairs pairs, EqmApplyInverse apply, void *co
     PetscCall(apply(context, q));
     PetscFunctionReturn(0);
   }
-  PetscCall(VecMDot(q, count, List(pairs, pairs->step, count), dot));
+  PetscCall(EqmVecProducts(q, count, List(pairs, pairs->step, count), dot));
   for (PetscInt k = count - 1; k >= 0; k--) { /* factor: minus alpha */
     for (PetscInt j = k + 1; j < count; j++) dot[k] += factor[j] * *Product(pairs, k, j);
     factor[k] = -dot[k] / *Product(pairs, k, k);
   }
-  PetscCall(VecMAXPY(q, count, factor, List(pairs, pairs->change, count)));
+  PetscCall(EqmVecAddMultiples(q, count, factor, List(pairs, pairs->change, count)));
   PetscCall(apply(context, q));
-  PetscCall(VecMDot(q, count, List(pairs, pairs->change, count), dot));
+  PetscCall(EqmVecProducts(q, count, List(pairs, pairs->change, count), dot));
   for (PetscInt k = 0; k < count; k++) { /* factor: alpha minus beta */
     for (PetscInt j = 0; j < k; j++) dot[k] += factor[j] * *Product(pairs, j, k);
     factor[k] = -factor[k] - dot[k] / *Product(pairs, k, k);
   }
-  PetscCall(VecMAXPY(q, count, factor, List(pairs, pairs->step, count)));
+  PetscCall(EqmVecAddMultiples(q, count, factor, List(pairs, pairs->step, count)));
   PetscFunctionReturn(0);
 }
 
