@@ -109,7 +109,8 @@ void EqmBalanceCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, Pe
   const PetscInt *const v = map->level->cells + 3 * cell, dim = map->dim;
   const PetscReal w = map->level->weight[cell], angle = .5 * EqmAngleFactor(map);
   const PetscReal *const p[3] = {map->x + dim * v[0], map->x + dim * v[1], map->x + dim * v[2]};
-  PetscReal half[3], weight[3], worst = 0., row[6];
+  PetscReal scratch[3], weight[3], worst = 0., row[6];
+  const PetscReal *const half = EqmMapHalfCotangents(map, cell, scratch);
   EqmLevelResidual residual[2];
   const PetscInt count = EqmLevelResiduals(dim, p[0], p[1], p[2], 1. / (map->total * w), residual);
   PetscInt first[3], size = 0;
@@ -128,7 +129,6 @@ void EqmBalanceCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, Pe
     for (PetscInt k = 0; k < size * size; k++) s->matrix[k] += w * row[k / size] * row[k % size];
     worst = PetscMax(worst, PetscAbsReal(residual[m].rho));
   }
-  EqmHalfCotangents(map->level, cell, half);
   AddAnglePull(map, angle, half, p, s);
   for (PetscInt a = 0; a < 3; a++) weight[a] = angle * half[a] + damping / (2. * PetscSqrtReal(3.)) * (worst + floor);
   AddLaplacian(map, weight, s, first, size);
@@ -227,7 +227,7 @@ PetscErrorCode EqmBalanceSearch(EqmLevelMap *map, const PetscReal *step, EqmBala
   enum { MOST_TRIALS = 12 };
   const PetscInt length = map->dim * map->level->num_vertices;
   EqmLevelValue best = *value;
-  PetscReal s = 1., *trial, *kept;
+  PetscReal s = 1., total = map->total, *trial, *kept;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(length, &trial, length, &kept));
@@ -239,6 +239,7 @@ PetscErrorCode EqmBalanceSearch(EqmLevelMap *map, const PetscReal *step, EqmBala
     if (there.objective < best.objective) {
       PetscCall(PetscArraycpy(kept, trial, length));
       best = there;
+      total = map->total;
       *t = s;
     } else if (*t > 0.) {
       break;
@@ -246,7 +247,8 @@ PetscErrorCode EqmBalanceSearch(EqmLevelMap *map, const PetscReal *step, EqmBala
   }
   if (*t > 0.) PetscCall(PetscArraycpy(map->x, kept, length));
   PetscCall(PetscFree2(trial, kept));
-  PetscCall(evaluate(context, map, map->x, value));
+  *value = best;
+  map->total = total;
   PetscFunctionReturn(0);
 }
 

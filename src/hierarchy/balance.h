@@ -28,8 +28,9 @@ PETSC_INTERN PetscErrorCode EqmBalanceAssemble(const EqmLevelMap *map, PetscReal
                                                EqmLevelSystem *system, PetscBool *success);
 /* The places at length t along a step, two numbers per vertex. Not collective. */
 PETSC_INTERN void EqmBalanceMove(const EqmLevelMap *map, const PetscReal *step, PetscReal t, PetscReal *to);
-/* Halve the step until the objective falls, and once more if that is better still; the map is then there. `t`: the step
-   taken, 0: none. As collective as `evaluate`, which is EqmLevelMapEvaluate or the like. */
+/* Halve the step until the objective falls, and once more if that is better still; the map is then there. `value`: the
+   map's, before and after. `t`: the step taken, 0: none. As collective as `evaluate`, which is EqmLevelMapEvaluate or
+   the like. */
 typedef PetscErrorCode (*EqmBalanceEvaluate)(void *context, EqmLevelMap *map, const PetscReal *x, EqmLevelValue *value);
 PETSC_INTERN PetscErrorCode EqmBalanceSearch(EqmLevelMap *map, const PetscReal *step, EqmBalanceEvaluate evaluate,
                                              void *context, EqmLevelValue *value, PetscReal *t);

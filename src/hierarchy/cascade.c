@@ -108,6 +108,7 @@ static PetscErrorCode RelaxLevel(EqmLevelMap *map, PetscInt left, const EqmCasca
   EqmLevelValue first, value;
 
   PetscFunctionBegin;
+  PetscCall(EqmLevelMapKeepAngles(map));
   PetscCall(EqmLevelStarsCreate(map->level, &stars));
   PetscCall(EqmLevelMapEvaluate(map, map->x, &first)); /* for its total, too */
   value = first;

@@ -26,26 +26,49 @@ void EqmProlongationRestrict(const EqmProlongation *p, const PetscReal *fine, Pe
   }
 }
 
-/* Columns of a coarse row, in the order in which they are met; `met` has the row's number behind each. Returns how
- * many.
- */
-static PetscInt RowPattern(const EqmProlongation *p, const EqmBlockMatrix *fine, PetscInt j, PetscInt *met,
-                           PetscInt *column)
+/* Rows are found so many at a time: their columns, one row's after the other. */
+enum { ROWS_OF_CHUNK = 2048 };
+typedef struct {
+  PetscInt length, room, *column;
+} Chunk;
+
+/* A few numbers, ascending. */
+static void Sort(PetscInt count, PetscInt *number)
+{
+  for (PetscInt k = 1; k < count; k++) {
+    const PetscInt value = number[k];
+    PetscInt at = k;
+    for (; at > 0 && number[at - 1] > value; at--) number[at] = number[at - 1];
+    number[at] = value;
+  }
+}
+
+/* The columns of a coarse row, ascending, at the chunk's end; `met` has the row's number behind each. Returns how many;
+   -1: no memory. */
+static PetscInt FindRow(const EqmProlongation *p, const EqmBlockMatrix *fine, PetscInt j, PetscInt *met, Chunk *chunk)
 {
   PetscInt count = 0;
 
   for (PetscInt k = p->start[j]; k < p->start[j + 1]; k++) {
-    const PetscInt i = p->from[k] / WIDTH;
+    const PetscInt i = p->from[k] / WIDTH, most = WIDTH * (fine->start[i + 1] - fine->start[i]);
+    if (chunk->length + count + most > chunk->room) {
+      const PetscInt room = 2 * (chunk->length + count + most);
+      PetscInt *const column = realloc(chunk->column, (size_t)room * sizeof(PetscInt));
+      if (!column) return -1;
+      chunk->column = column;
+      chunk->room = room;
+    }
     for (PetscInt q = fine->start[i]; q < fine->start[i + 1]; q++) {
       for (PetscInt r = WIDTH * fine->column[q]; r < WIDTH * fine->column[q] + WIDTH; r++) {
         const PetscInt c = p->column[r];
         if (c < 0 || met[c] == j) continue;
-        if (column) column[count] = c;
         met[c] = j;
-        count++;
+        chunk->column[chunk->length + count++] = c;
       }
     }
   }
+  if (count > 0) Sort(count, chunk->column + chunk->length);
+  chunk->length += count;
   return count;
 }
 
@@ -63,50 +86,40 @@ static PetscInt *MakeTable(PetscInt num_columns, int *bad)
   return table;
 }
 
-/* How long the rows are, then where they begin. `bad`: a thread has no memory. */
-static void CountRows(const EqmProlongation *p, const EqmBlockMatrix *fine, EqmBlockMatrix *coarse, int *bad)
+/* All rows in chunks, how long each is at coarse->start[j + 1]. `bad`: a thread has no memory. */
+static void FindChunks(const EqmProlongation *p, const EqmBlockMatrix *fine, PetscInt num_chunks, Chunk *chunk,
+                       EqmBlockMatrix *coarse, int *bad)
 {
 #pragma omp parallel if (p->num_fine > LEAST_ROWS)
   {
     PetscInt *const met = MakeTable(p->num_columns, bad);
 #pragma omp for schedule(static)
-    for (PetscInt j = 0; j < p->num_coarse; j++) {
-      if (met) coarse->start[j + 1] = RowPattern(p, fine, j, met, NULL);
-    }
-    free(met);
-  }
-  coarse->start[0] = 0;
-  for (PetscInt j = 0; j < p->num_coarse && !*bad; j++) coarse->start[j + 1] += coarse->start[j];
-}
-
-/* A few numbers, ascending. */
-static void Sort(PetscInt count, PetscInt *number)
-{
-  for (PetscInt k = 1; k < count; k++) {
-    const PetscInt value = number[k];
-    PetscInt at = k;
-    for (; at > 0 && number[at - 1] > value; at--) number[at] = number[at - 1];
-    number[at] = value;
-  }
-}
-
-/* Columns, ascending. */
-static void FindColumns(const EqmProlongation *p, const EqmBlockMatrix *fine, EqmBlockMatrix *coarse, int *bad)
-{
-#pragma omp parallel if (p->num_fine > LEAST_ROWS)
-  {
-    PetscInt *const met = MakeTable(p->num_columns, bad);
-#pragma omp for schedule(static)
-    for (PetscInt j = 0; j < p->num_coarse; j++) {
-      PetscInt *const column = coarse->column + coarse->start[j];
-      if (!met) continue;
-      const PetscInt count = RowPattern(p, fine, j, met, column);
-      Sort(count, column);
-      for (PetscInt k = 0; k < count; k++) {
-        if (column[k] == j) coarse->diagonal[j] = coarse->start[j] + k;
+    for (PetscInt k = 0; k < num_chunks; k++) {
+      const PetscInt end = PetscMin((k + 1) * ROWS_OF_CHUNK, p->num_coarse);
+      for (PetscInt j = k * ROWS_OF_CHUNK; met && j < end; j++) {
+        coarse->start[j + 1] = FindRow(p, fine, j, met, &chunk[k]);
+        if (coarse->start[j + 1] >= 0) continue;
+#pragma omp atomic write
+        *bad = 1;
+        break;
       }
     }
     free(met);
+  }
+}
+
+/* The chunks' columns one after the other, and where the diagonals are. */
+static void JoinChunks(PetscInt num_chunks, const Chunk *chunk, EqmBlockMatrix *coarse)
+{
+#pragma omp parallel for schedule(static) if (coarse->num_rows > LEAST_ROWS)
+  for (PetscInt k = 0; k < num_chunks; k++) {
+    const PetscInt begin = k * ROWS_OF_CHUNK, end = PetscMin(begin + ROWS_OF_CHUNK, coarse->num_rows);
+    for (PetscInt q = 0; q < chunk[k].length; q++) coarse->column[coarse->start[begin] + q] = chunk[k].column[q];
+    for (PetscInt j = begin; j < end; j++) {
+      for (PetscInt q = coarse->start[j]; q < coarse->start[j + 1]; q++) {
+        if (coarse->column[q] == j) coarse->diagonal[j] = q;
+      }
+    }
   }
 }
 
@@ -130,19 +143,26 @@ static PetscErrorCode FindMirrors(EqmBlockMatrix *coarse)
 PetscErrorCode EqmProlongationGalerkinPattern(const EqmProlongation *p, const EqmBlockMatrix *fine,
                                               EqmBlockMatrix *coarse)
 {
+  const PetscInt n = p->num_coarse, num_chunks = (n + ROWS_OF_CHUNK - 1) / ROWS_OF_CHUNK;
+  Chunk *chunk;
   int bad = 0;
 
   PetscFunctionBegin;
-  *coarse = (EqmBlockMatrix){.num_rows = p->num_coarse};
-  PetscCall(PetscMalloc1(p->num_coarse + 1, &coarse->start));
-  PetscCall(PetscMalloc1(p->num_coarse, &coarse->diagonal));
-  CountRows(p, fine, coarse, &bad);
+  *coarse = (EqmBlockMatrix){.num_rows = n};
+  PetscCall(PetscMalloc1(n + 1, &coarse->start));
+  PetscCall(PetscMalloc1(n, &coarse->diagonal));
+  PetscCall(PetscCalloc1(num_chunks, &chunk));
+  FindChunks(p, fine, num_chunks, chunk, coarse, &bad);
   if (!bad) {
-    PetscCall(PetscMalloc1(coarse->start[p->num_coarse], &coarse->column));
-    PetscCall(PetscMalloc1(coarse->start[p->num_coarse], &coarse->mirror));
-    PetscCall(PetscMalloc1(coarse->start[p->num_coarse], &coarse->entry));
-    FindColumns(p, fine, coarse, &bad);
+    coarse->start[0] = 0;
+    for (PetscInt j = 0; j < n; j++) coarse->start[j + 1] += coarse->start[j];
+    PetscCall(PetscMalloc1(coarse->start[n], &coarse->column));
+    PetscCall(PetscMalloc1(coarse->start[n], &coarse->mirror));
+    PetscCall(PetscMalloc1(coarse->start[n], &coarse->entry));
+    JoinChunks(num_chunks, chunk, coarse);
   }
+  for (PetscInt k = 0; k < num_chunks; k++) free(chunk[k].column);
+  PetscCall(PetscFree(chunk));
   PetscCheck(!bad, PETSC_COMM_SELF, PETSC_ERR_MEM, "too little memory for a coarser matrix");
   PetscCall(FindMirrors(coarse));
   PetscFunctionReturn(0);

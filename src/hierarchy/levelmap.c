@@ -1,12 +1,16 @@
 /* Maps of one level: where vertices may move, the objective. */
 #include "hierarchy/levelmap.h"
 
+/* Sums are taken piece by piece and then over the pieces, in one order for any number of threads. */
+enum { CELLS_OF_PIECE = 8192 };
+
 PetscErrorCode EqmLevelMapCreate(const EqmHierarchyLevel *level, EqmCascadeTarget target, EqmLevelMap *map)
 {
   PetscFunctionBegin;
   map->level = level;
   map->dim = target == EQM_TARGET_SPHERE ? 3 : 2;
   map->frame = NULL;
+  map->half = NULL;
   map->epsilon = 0.;
   map->total = target == EQM_TARGET_SPHERE ? 4. * PETSC_PI : target == EQM_TARGET_DISK ? PETSC_PI : 1.;
   PetscCall(PetscMalloc1(map->dim * level->num_vertices, &map->x));
@@ -19,6 +23,7 @@ PetscErrorCode EqmLevelMapDestroy(EqmLevelMap *map)
   PetscFunctionBegin;
   PetscCall(PetscFree(map->x));
   PetscCall(PetscFree(map->motion));
+  PetscCall(PetscFree(map->half));
   PetscFunctionReturn(0);
 }
 
@@ -69,22 +74,29 @@ void EqmHalfCotangents(const EqmHierarchyLevel *level, PetscInt cell, PetscReal 
     half[a] = area > 0. ? -.5 * EqmDot3(side[(a + 1) % 3], side[(a + 2) % 3]) / area : 0.;
 }
 
+PetscErrorCode EqmLevelMapKeepAngles(EqmLevelMap *map)
+{
+  PetscFunctionBegin;
+  if (map->half) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(3 * map->level->num_cells, &map->half));
+#pragma omp parallel for schedule(static) if (map->level->num_cells > CELLS_OF_PIECE)
+  for (PetscInt c = 0; c < map->level->num_cells; c++) EqmHalfCotangents(map->level, c, map->half + 3 * c);
+  PetscFunctionReturn(0);
+}
+
 /* Twice the Dirichlet energy of a cell's linear map is the sum of its squared sides times half cotangents. */
 static PetscReal CellDirichlet(const EqmLevelMap *map, const PetscReal *x, PetscInt cell)
 {
   const PetscInt *const v = map->level->cells + 3 * cell;
-  PetscReal half[3], sum = 0.;
+  PetscReal scratch[3], sum = 0.;
+  const PetscReal *const half = EqmMapHalfCotangents(map, cell, scratch);
 
-  EqmHalfCotangents(map->level, cell, half);
   for (PetscInt a = 0; a < 3; a++) {
     const PetscReal *const p = x + map->dim * v[(a + 1) % 3], *const q = x + map->dim * v[(a + 2) % 3];
     for (PetscInt k = 0; k < map->dim; k++) sum += .5 * half[a] * PetscSqr(p[k] - q[k]);
   }
   return sum;
 }
-
-/* Sums are taken piece by piece and then over the pieces, in one order for any number of threads. */
-enum { CELLS_OF_PIECE = 8192 };
 
 PetscReal EqmLevelMapArea(const EqmLevelMap *map, const PetscReal *x, PetscInt begin, PetscInt end)
 {

@@ -26,6 +26,7 @@ typedef struct {
   unsigned char *motion;  /* an EqmMotion per vertex */
   PetscReal *x;           /* dim per vertex */
   const PetscReal *frame; /* 2 dim per vertex: directions of its motion, orthonormal; NULL: those of EqmMotionFrame */
+  PetscReal *half;        /* 3 per cell: EqmHalfCotangents; NULL: not kept */
   PetscReal epsilon;      /* weight of the angle energy */
   PetscReal total;        /* A of the map at its last evaluation */
 } EqmLevelMap;
@@ -57,6 +58,17 @@ PETSC_INTERN void EqmLevelMapValue(const EqmLevelMap *map, const EqmLevelSums *s
 /* Half cotangents of a cell's angles on the surface, with slivers changed so that its Laplacian is bounded: positive
    semidefinite for any triangle. Not collective. */
 PETSC_INTERN void EqmHalfCotangents(const EqmHierarchyLevel *level, PetscInt cell, PetscReal half[3]);
+
+/* Keep them for all cells, for maps that are worked on. Not collective. */
+PETSC_INTERN PetscErrorCode EqmLevelMapKeepAngles(EqmLevelMap *map);
+
+/* Those of a map's cell; `scratch` is for where they are not kept. */
+static inline const PetscReal *EqmMapHalfCotangents(const EqmLevelMap *map, PetscInt cell, PetscReal scratch[3])
+{
+  if (map->half) return map->half + 3 * cell;
+  EqmHalfCotangents(map->level, cell, scratch);
+  return scratch;
+}
 
 /* Factor of the angle energy. */
 static inline PetscReal EqmAngleFactor(const EqmLevelMap *map)

@@ -66,9 +66,8 @@ static PetscErrorCode RunShared(EqmRelaxer relaxer, const EqmCascadeOptions *opt
   PetscFunctionBegin;
   PetscCall(TakePlaces(relaxer, x));
   map->epsilon = options->epsilon_finest;
-  PetscCall(EqmSharedEvaluate(finest, map, map->x, &value));
+  PetscCall(EqmSharedRelaxationRun(relaxer->relaxation, options, &value));
   result->before = value.objective;
-  if (value.folds == 0) PetscCall(EqmSharedRelaxationRun(relaxer->relaxation, options));
   PetscCall(EqmSharedEvaluate(finest, map, map->x, &value));
   result->folds = value.folds;
   result->energy = value.energy;

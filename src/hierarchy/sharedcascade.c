@@ -24,10 +24,11 @@ static PetscErrorCode RelaxLevel(EqmShared shared, PetscInt k, EqmCascadeTarget 
                                  const EqmCascadeOptions *options, EqmLevelMap *map)
 {
   EqmSharedRelaxation relaxation;
+  EqmLevelValue before;
 
   PetscFunctionBegin;
   PetscCall(EqmSharedRelaxationCreate(shared, k, target, map, &relaxation));
-  PetscCall(EqmSharedRelaxationRun(relaxation, options));
+  PetscCall(EqmSharedRelaxationRun(relaxation, options, &before));
   PetscCall(EqmSharedRelaxationDestroy(&relaxation));
   PetscCall(Show(&shared->level[k], map, "relaxed", 0, options));
   PetscFunctionReturn(0);

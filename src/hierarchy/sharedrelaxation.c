@@ -24,6 +24,7 @@ PetscErrorCode EqmSharedRelaxationCreate(EqmShared shared, PetscInt k, EqmCascad
   relaxation->level = &shared->level[k];
   relaxation->target = target;
   relaxation->map = map;
+  PetscCall(EqmLevelMapKeepAngles(map));
   PetscCall(EqmSharedStarsCreate(relaxation->level, &relaxation->stars));
   *out = relaxation;
   PetscFunctionReturn(0);
@@ -95,22 +96,24 @@ static PetscErrorCode Steps(EqmSharedRelaxation relaxation, const EqmCascadeOpti
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSharedRelaxationRun(EqmSharedRelaxation relaxation, const EqmCascadeOptions *options)
+PetscErrorCode EqmSharedRelaxationRun(EqmSharedRelaxation relaxation, const EqmCascadeOptions *options,
+                                      EqmLevelValue *before)
 {
   const EqmSharedLevel *const level = relaxation->level;
   EqmLevelMap *const map = relaxation->map;
-  EqmLevelValue first, value;
+  EqmLevelValue value;
 
   PetscFunctionBegin;
-  PetscCall(EqmSharedEvaluate(level, map, map->x, &first)); /* for its total, too */
-  value = first;
+  PetscCall(EqmSharedEvaluate(level, map, map->x, before)); /* for its total, too */
+  if (before->folds > 0) PetscFunctionReturn(0);
+  value = *before;
   for (PetscInt s = 0; s < options->sweeps; s += 2) {
-    const PetscReal before = value.objective;
+    const PetscReal last = value.objective;
     PetscCall(EqmSharedRelax(level, map, &relaxation->stars, PetscMin(2, options->sweeps - s)));
     PetscCall(EqmSharedEvaluate(level, map, map->x, &value));
-    if (value.objective > (1. - options->least_gain) * before) break;
+    if (value.objective > (1. - options->least_gain) * last) break;
   }
-  if (options->steps > 0 && value.objective <= (1. - options->least_gain) * first.objective)
+  if (options->steps > 0 && value.objective <= (1. - options->least_gain) * before->objective)
     PetscCall(Steps(relaxation, options, &value));
   PetscCall(EqmSharedRelax(level, map, &relaxation->stars, EQM_SWEEPS_AFTER));
   PetscFunctionReturn(0);

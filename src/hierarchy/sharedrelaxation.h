@@ -14,7 +14,9 @@ PETSC_INTERN PetscErrorCode EqmSharedRelaxationDestroy(EqmSharedRelaxation *rela
 /* Prolongations at the present map, down to a level of no more than `direct` vertices; without this they are those of
    the first step. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedRelaxationSetImage(EqmSharedRelaxation relaxation, PetscInt direct);
-/* Sweeps, Gauss-Newton steps, sweeps, none of which folds a triangle. Collective. */
-PETSC_INTERN PetscErrorCode EqmSharedRelaxationRun(EqmSharedRelaxation relaxation, const EqmCascadeOptions *options);
+/* Sweeps, Gauss-Newton steps, sweeps, none of which folds a triangle; a map that folds is left as it is. `before`: its
+   value. Collective. */
+PETSC_INTERN PetscErrorCode EqmSharedRelaxationRun(EqmSharedRelaxation relaxation, const EqmCascadeOptions *options,
+                                                   EqmLevelValue *before);
 
 #endif
