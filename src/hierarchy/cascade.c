@@ -1,5 +1,6 @@
 /* From the coarsest level to the finest. */
 #include "hierarchy/balance.h"
+#include "hierarchy/cycle.h"
 #include "hierarchy/reinsert.h"
 #include "base/quiet.h"
 #include <math.h>
@@ -13,6 +14,7 @@ PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options)
                                  .least_gain = .02,
                                  .steps = 1,
                                  .direct = 1500,
+                                 .bottom = EQM_CYCLE_BOTTOM,
                                  .coarsest = 1000,
                                  .trace = PETSC_FALSE};
   PetscFunctionReturn(0);
@@ -87,11 +89,12 @@ static PetscErrorCode Show(const EqmCascadeOptions *options, EqmLevelMap *map, c
 }
 
 /* How many of the next coarser levels multigrid needs; none where the level is small enough to be factored. */
-static PetscInt LevelsBelow(const EqmLevelMap *map, PetscInt left, PetscInt direct)
+static PetscInt LevelsBelow(const EqmLevelMap *map, PetscInt left, const EqmCascadeOptions *options)
 {
   PetscInt k = 0;
 
-  while (k < left && map[k].level->num_vertices > direct) k++;
+  if (map->level->num_vertices <= options->direct) return 0;
+  while (k < left && map[k].level->num_vertices > options->bottom) k++;
   return k;
 }
 
@@ -99,7 +102,7 @@ static PetscInt LevelsBelow(const EqmLevelMap *map, PetscInt left, PetscInt dire
 static PetscErrorCode RelaxLevel(EqmLevelMap *map, PetscInt left, const EqmCascadeOptions *options)
 {
   enum { MOST_STEPS = 60, WORK = 1000000 };
-  const PetscInt below = LevelsBelow(map, left, options->direct);
+  const PetscInt below = LevelsBelow(map, left, options);
   const EqmBalanceOptions direct = {.most_steps = PetscMin(MOST_STEPS, WORK / map->level->num_vertices + 1),
                                     .gain = 1e-3,
                                     .damping = .1},

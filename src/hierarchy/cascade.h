@@ -15,6 +15,7 @@ typedef struct {
                                them that steps follow, which sweeps cannot do for; 0: all are done */
   PetscInt steps;           /* Gauss-Newton steps by multigrid on each level */
   PetscInt direct;          /* levels with no more vertices have their matrices factored */
+  PetscInt bottom;          /* and those at the bottom of multigrid with no more */
   PetscInt coarsest;        /* planar: a level with no more vertices is mapped first */
   PetscBool trace;          /* print a line per level */
 } EqmCascadeOptions;

@@ -6,6 +6,7 @@
 #include "hierarchy/levelsystem.h"
 #include "hierarchy/sweeps.h"
 
+enum { EQM_CYCLE_BOTTOM = 500 }; /* vertices of a level small enough to be factored again and again */
 typedef struct _p_EqmCycle *EqmCycle;
 /* Patterns of all levels. `prolongation`: from each coarser level to the next finer one, the finest first; they and
    `finest` must outlive the cycle. Not collective. */

@@ -52,7 +52,7 @@ PetscErrorCode EqmRelaxerSetImage(EqmRelaxer relaxer, const EqmCascadeOptions *o
   PetscFunctionBegin;
   if (!relaxer->shared) PetscFunctionReturn(0);
   PetscCall(TakePlaces(relaxer, x));
-  PetscCall(EqmSharedRelaxationSetImage(relaxer->relaxation, options->direct));
+  PetscCall(EqmSharedRelaxationSetImage(relaxer->relaxation, options->bottom));
   PetscFunctionReturn(0);
 }
 

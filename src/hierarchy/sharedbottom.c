@@ -28,7 +28,7 @@ static PetscErrorCode OnFirstRank(EqmSharedBottom bottom, Work work, void *conte
 
 typedef struct {
   EqmCascadeTarget target;
-  PetscInt direct;
+  PetscInt most;
   const EqmBlockMatrix *matrix;
   const PetscReal *x;
 } Given;
@@ -40,7 +40,7 @@ static PetscErrorCode MakeCycle(EqmSharedBottom bottom, void *context)
   EqmLevelMap map[EQM_MOST_LEVELS];
 
   PetscFunctionBegin;
-  while (bottom->num + 1 < bottom->hierarchy->num_levels && level[bottom->num].num_vertices > given->direct)
+  while (bottom->num + 1 < bottom->hierarchy->num_levels && level[bottom->num].num_vertices > given->most)
     bottom->num++;
   for (PetscInt k = 0; k <= bottom->num; k++) {
     PetscCall(EqmLevelMapCreate(&level[k], given->target, &map[k]));
@@ -58,11 +58,11 @@ static PetscErrorCode MakeCycle(EqmSharedBottom bottom, void *context)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSharedBottomCreate(EqmShared shared, EqmCascadeTarget target, const EqmLevelMap *last,
-                                     PetscInt direct, const EqmBlockMatrix *matrix, EqmSharedBottom *out)
+PetscErrorCode EqmSharedBottomCreate(EqmShared shared, EqmCascadeTarget target, const EqmLevelMap *last, PetscInt most,
+                                     const EqmBlockMatrix *matrix, EqmSharedBottom *out)
 {
   const EqmHierarchy hierarchy = shared->coarser;
-  Given given = {.target = target, .direct = direct, .matrix = matrix};
+  Given given = {.target = target, .most = most, .matrix = matrix};
   EqmSharedBottom bottom;
   PetscReal *x;
 

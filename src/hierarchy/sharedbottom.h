@@ -6,11 +6,10 @@
 #include "hierarchy/shared.h"
 
 typedef struct _p_EqmSharedBottom *EqmSharedBottom;
-/* Prolongations at a map of the last shared level, down to a level of no more than `direct` vertices. `matrix`, which
+/* Prolongations at a map of the last shared level, down to a level of no more than `most` vertices. `matrix`, which
    must outlive it: all rows are the first rank's. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedBottomCreate(EqmShared shared, EqmCascadeTarget target, const EqmLevelMap *last,
-                                                  PetscInt direct, const EqmBlockMatrix *matrix,
-                                                  EqmSharedBottom *bottom);
+                                                  PetscInt most, const EqmBlockMatrix *matrix, EqmSharedBottom *bottom);
 PETSC_INTERN PetscErrorCode EqmSharedBottomDestroy(EqmSharedBottom *bottom);
 /* As EqmCycleFill. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedBottomFill(EqmSharedBottom bottom, PetscBool *success);

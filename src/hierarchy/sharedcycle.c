@@ -49,7 +49,7 @@ static PetscErrorCode CreateLevel(const EqmSharedLevel *shared, const EqmLevelMa
 }
 
 PetscErrorCode EqmSharedCycleCreate(EqmShared shared, PetscInt k, EqmCascadeTarget target, const EqmLevelMap *map,
-                                    PetscInt direct, EqmLevelSystem *system, EqmSharedCycle *out)
+                                    PetscInt most, EqmLevelSystem *system, EqmSharedCycle *out)
 {
   const EqmSharedLevel *const finest = &shared->level[k];
   const PetscInt num = shared->num_levels - 1 - k;
@@ -75,7 +75,7 @@ PetscErrorCode EqmSharedCycleCreate(EqmShared shared, PetscInt k, EqmCascadeTarg
     PetscCall(EqmSharedMapCreate(finest + j + 1, target, j == 0 ? map->x : own[j].x, &own[j + 1]));
   }
   PetscCall(
-      EqmSharedBottomCreate(shared, target, &own[num], direct, &cycle->level[num - 1].below.matrix, &cycle->bottom));
+      EqmSharedBottomCreate(shared, target, &own[num], most, &cycle->level[num - 1].below.matrix, &cycle->bottom));
   for (PetscInt j = 0; j < num; j++) PetscCall(EqmLevelMapDestroy(&own[j + 1]));
   *out = cycle;
   PetscFunctionReturn(0);

@@ -7,10 +7,10 @@
 #include "hierarchy/sharedmap.h"
 
 typedef struct _p_EqmSharedCycle *EqmSharedCycle;
-/* Prolongations at a map of level k, which is not the last shared one, down to a level of no more than `direct`
+/* Prolongations at a map of level k, which is not the last shared one, down to a level of no more than `most`
    vertices, and patterns of all levels; the system is the map's and must outlive the cycle. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedCycleCreate(EqmShared shared, PetscInt k, EqmCascadeTarget target,
-                                                 const EqmLevelMap *map, PetscInt direct, EqmLevelSystem *system,
+                                                 const EqmLevelMap *map, PetscInt most, EqmLevelSystem *system,
                                                  EqmSharedCycle *cycle);
 PETSC_INTERN PetscErrorCode EqmSharedCycleDestroy(EqmSharedCycle *cycle);
 /* Matrices of all levels from the system's present entries, of which each rank has its vertices' rows. `success` is

@@ -43,13 +43,13 @@ PetscErrorCode EqmSharedRelaxationDestroy(EqmSharedRelaxation *out)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSharedRelaxationSetImage(EqmSharedRelaxation relaxation, PetscInt direct)
+PetscErrorCode EqmSharedRelaxationSetImage(EqmSharedRelaxation relaxation, PetscInt most)
 {
   PetscFunctionBegin;
   if (!relaxation->has_system) PetscCall(EqmBalanceSystemCreate(relaxation->map, &relaxation->system));
   relaxation->has_system = PETSC_TRUE;
   PetscCall(EqmSharedCycleDestroy(&relaxation->cycle));
-  PetscCall(EqmSharedCycleCreate(relaxation->shared, relaxation->k, relaxation->target, relaxation->map, direct,
+  PetscCall(EqmSharedCycleCreate(relaxation->shared, relaxation->k, relaxation->target, relaxation->map, most,
                                  &relaxation->system, &relaxation->cycle));
   PetscFunctionReturn(0);
 }
@@ -86,7 +86,7 @@ static PetscErrorCode Steps(EqmSharedRelaxation relaxation, const EqmCascadeOpti
   PetscReal damping = .03, t;
 
   PetscFunctionBegin;
-  if (!relaxation->cycle) PetscCall(EqmSharedRelaxationSetImage(relaxation, options->direct));
+  if (!relaxation->cycle) PetscCall(EqmSharedRelaxationSetImage(relaxation, options->bottom));
   for (PetscInt s = 0; s < options->steps && value->folds == 0; s++) {
     const PetscReal before = value->objective;
     PetscCall(Step(relaxation, damping, tolerance, value, &t));

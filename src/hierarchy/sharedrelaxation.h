@@ -11,9 +11,9 @@ typedef struct _p_EqmSharedRelaxation *EqmSharedRelaxation;
 PETSC_INTERN PetscErrorCode EqmSharedRelaxationCreate(EqmShared shared, PetscInt k, EqmCascadeTarget target,
                                                       EqmLevelMap *map, EqmSharedRelaxation *relaxation);
 PETSC_INTERN PetscErrorCode EqmSharedRelaxationDestroy(EqmSharedRelaxation *relaxation);
-/* Prolongations at the present map, down to a level of no more than `direct` vertices; without this they are those of
+/* Prolongations at the present map, down to a level of no more than `most` vertices; without this they are those of
    the first step. Collective. */
-PETSC_INTERN PetscErrorCode EqmSharedRelaxationSetImage(EqmSharedRelaxation relaxation, PetscInt direct);
+PETSC_INTERN PetscErrorCode EqmSharedRelaxationSetImage(EqmSharedRelaxation relaxation, PetscInt most);
 /* Sweeps, Gauss-Newton steps, sweeps, none of which folds a triangle; a map that folds is left as it is. `before`: its
    value. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedRelaxationRun(EqmSharedRelaxation relaxation, const EqmCascadeOptions *options,

@@ -235,12 +235,11 @@ static PetscErrorCode Destroy(EqmLinear linear)
 /* The finest level's pattern, and how many coarser ones there are down to one that is factored. */
 static PetscErrorCode MakeSystem(EqmLinear linear, void *context)
 {
-  enum { DIRECT = 1500 };
   OnLevels *const on = linear->data;
   const EqmHierarchyLevel *const level = on->hierarchy->level;
 
   PetscFunctionBegin;
-  while (on->below + 1 < on->hierarchy->num_levels && level[on->below].num_vertices > DIRECT) on->below++;
+  while (on->below + 1 < on->hierarchy->num_levels && level[on->below].num_vertices > EQM_CYCLE_BOTTOM) on->below++;
   PetscCall(EqmLevelSystemCreate(&level[0], context, &on->system));
   PetscFunctionReturn(0);
 }
