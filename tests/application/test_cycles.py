@@ -1,5 +1,5 @@
 """lm by cycles on a hierarchy of meshes: no factor, a map like that of a factor, the same bits after a restart and for any
-number of threads, the same result on other ranks; what it cannot do is refused.
+number of threads, the same result on other ranks; where cycles gain nothing, a factor; what it cannot do is refused.
 
 usage: python3 test_cycles.py EQUIMAP [RANKS]
 """
@@ -57,6 +57,20 @@ def check_ranks(program):
     assert here["work"] == other["work"], (here["work"], other["work"])
 
 
+def check_fall_back(program):
+    """At the end of arithmetic cycles gain nothing: a factor takes over, for this run and its restarts."""
+    with open(program.file("five.obj"), "w", encoding="utf-8") as file:
+        file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .4 .6 .1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n")
+    options = ("-start", "tutte", *CYCLES[2:])
+    told = program.succeed("disk", "five.obj", "-o", "five.h5", "-summary", "five.json", "-checkpoint", "five.c.h5", "-checkpoint_every", 1, *options)
+    assert "factors instead" in told.stdout + told.stderr, told
+    found = json.loads(program.read("five.json"))
+    assert found["work"]["coupled_factorizations"] == 1 and found["work"]["set_ups"] > 1, found["work"]
+    assert found["energy"]["final"] < 1e-25 and found["folds"] == 0, found
+    again = run(program, "five-again", *options, "-restart", "five.c.h5", mesh="five.obj")
+    assert again["energy"]["final"] < 1e-25 and again["work"]["set_ups"] == found["work"]["set_ups"], again["work"]
+
+
 def check_refusals(program):
     with open(program.file("angles.csv"), "w", encoding="utf-8") as file:
         file.write("vertex,angle\n")
@@ -78,6 +92,7 @@ def main():
         check_maps(program)
         check_bits(program)
         check_ranks(program)
+        check_fall_back(program)
         check_refusals(program)
 
 
