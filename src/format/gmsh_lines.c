@@ -219,7 +219,7 @@ static PetscErrorCode WalkSection(EqmGmsh *gmsh, const EqmPartFile *file, EqmGms
     PetscCallMPI(MPI_Bcast(&walk, sizeof(walk) / sizeof(PetscInt64), MPIU_INT64, r, file->comm));
     PetscCall(PetscMPIIntCast((PetscInt)(walk.num_runs - known), &count));
     PetscCall(PetscMalloc1(count, &more));
-    if (file->rank == r) PetscCall(PetscArraycpy(more, survey->runs + known, count));
+    if (file->rank == r && count) PetscCall(PetscArraycpy(more, survey->runs + known, count));
     PetscCallMPI(MPI_Bcast(more, count, type, r, file->comm));
     for (PetscMPIInt k = 0; k < count && file->rank != r; ++k) PetscCall(EqmGmshAddRun(survey, &more[k]));
     PetscCall(PetscFree(more));
