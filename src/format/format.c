@@ -63,6 +63,11 @@ const EqmFormat *EqmFormatOfSuffix(const char *file)
   return EqmFormatAt(EqmFormatRowOfSuffix(file));
 }
 
+PetscBool EqmFormatIsWritable(const EqmFormat *format)
+{
+  return format->write || format->write_stream || format->write_parallel ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* EqmFormatListSuffixes - ".ply .vtu ..." of the formats that can be written, or read, for messages. Not collective. */
 void EqmFormatListSuffixes(PetscBool writable, char *text, size_t length)
 {
@@ -70,8 +75,7 @@ void EqmFormatListSuffixes(PetscBool writable, char *text, size_t length)
 
   if (length) text[0] = '\0';
   for (int i = 0; i < NUM_FORMATS; ++i) {
-    const PetscBool can =
-        writable ? formats[i]->write || formats[i]->write_parallel : formats[i]->parse || formats[i]->read_parallel;
+    const PetscBool can = writable ? EqmFormatIsWritable(formats[i]) : formats[i]->parse || formats[i]->read_parallel;
     const size_t left = used < length ? length - used : 0;
 
     if (can)

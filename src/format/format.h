@@ -28,6 +28,10 @@ typedef PetscErrorCode (*EqmPartParser)(const EqmPartFile *file, EqmSerialMesh *
    cannot hold is an EQM_ERR_USAGE, quietly, with a sentence in `error`. */
 typedef PetscErrorCode (*EqmWriter)(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                     PetscInt num_fields, char *error, size_t error_length);
+struct EqmMeshStream;
+/* The same of a mesh that it takes row by row (stream.h), wherever the rows are. */
+typedef PetscErrorCode (*EqmStreamWriter)(EqmAtomicFile *file, struct EqmMeshStream *stream, char *error,
+                                          size_t error_length);
 /* Reader and writer of a format that all ranks read and write together. Collective. */
 typedef PetscErrorCode (*EqmParallelReader)(MPI_Comm comm, const char *file, EqmSoup *soup);
 typedef PetscErrorCode (*EqmParallelWriter)(EqmSoup soup, const char *file);
@@ -43,9 +47,11 @@ typedef struct {
   EqmParser parse;                                          /* NULL: cannot be read by one rank */
   EqmPartParser parse_part;                                 /* used on several ranks; NULL: one parses all */
   EqmWriter write;                                          /* NULL: cannot be written by one rank */
+  EqmStreamWriter write_stream;                             /* used instead of `write` where it is there */
   EqmParallelReader read_parallel;                          /* used instead of `parse` where it is there */
   EqmParallelWriter write_parallel;                         /* used instead of `write` where it is there */
   EqmLoader load;                                           /* NULL: a mesh is one file */
+  PetscBool writes_corners;                                 /* the writer wants the points of cells' corners */
   PetscBool writes_texture;                                 /* mesh->texture is written */
   PetscBool vertex_fields, cell_fields;                     /* which fields are written */
   PetscBool groups;                                         /* of cell fields the field "group" is written */
@@ -67,6 +73,14 @@ PETSC_INTERN PetscErrorCode EqmFormatReadOnRank(const char *file, int *row, EqmS
 /* Write a mesh and its fields from this rank, the format by suffix; see write.c. Not collective. */
 PETSC_INTERN PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                                  PetscInt num_fields, char *error, size_t length);
+/* EqmFormatWriteSlabs - write a mesh from all ranks: the cells and fields of a soup, with these vertices, 3 per vertex
+   of its slab, and first of all these fields, of which values are those of the slab; see write.c. Collective. is_map -
+   it is the map that is written: fields of the soup that a result has itself, and a texture where it would be taken for
+   the map, are left out. Errors: EQM_ERR_USAGE, EQM_ERR_IO. */
+PETSC_INTERN PetscErrorCode EqmFormatWriteSlabs(EqmSoup soup, const PetscReal *vertices, const EqmField *fields,
+                                                PetscInt num_fields, PetscBool is_map, const char *file);
+/* Can files of the format be written? Not collective. */
+PETSC_INTERN PetscBool EqmFormatIsWritable(const EqmFormat *format);
 /* EqmFormatDescribeDropped - which of a soup's fields a file of this name will not hold: their names, separated by
    commas; "" if it holds them all. is_map - it is the map that is written. Not collective. */
 PETSC_INTERN void EqmFormatDescribeDropped(const char *file, PetscBool is_map, PetscInt num_fields,
@@ -75,6 +89,7 @@ PETSC_INTERN void EqmFormatDescribeDropped(const char *file, PetscBool is_map, P
 PETSC_INTERN const EqmField *EqmFieldPolygon(const EqmField *fields, PetscInt num_fields);
 PETSC_INTERN const EqmField *EqmFieldGroup(const EqmField *fields, PetscInt num_fields);
 /* The number of a cell's group as an int; 0 where there is none or it is no such number. Not collective. */
+PETSC_INTERN int EqmGroupOf(PetscReal number);
 PETSC_INTERN int EqmGroupOfCell(const EqmField *group, PetscInt cell);
 /* Refuse what a format cannot hold: more than 2^31 rows; tetrahedra. EQM_ERR_USAGE (quiet). Not collective. */
 PETSC_INTERN PetscErrorCode EqmRequireSmall(const EqmSerialMesh *mesh, const char *format, char *error, size_t length);

@@ -38,7 +38,7 @@ EQM_DEFINE_FORMAT(Gmsh) = {.name = "Gmsh MSH",
                            .recognise = RecogniseGmsh,
                            .parse = ParseGmsh,
                            .parse_part = EqmGmshParsePart,
-                           .write = EqmWriteGmsh,
+                           .write_stream = EqmWriteGmsh,
                            .vertex_fields = PETSC_TRUE,
                            .cell_fields = PETSC_TRUE,
                            .groups = PETSC_TRUE};

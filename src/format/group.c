@@ -22,9 +22,12 @@ const EqmField *EqmFieldPolygon(const EqmField *fields, PetscInt num_fields)
   return Find(fields, num_fields, EQM_FIELD_POLYGON);
 }
 
+int EqmGroupOf(PetscReal number)
+{
+  return number > -2147483648.0 && number < 2147483648.0 ? (int)number : 0;
+}
+
 int EqmGroupOfCell(const EqmField *group, PetscInt cell)
 {
-  const PetscReal number = group ? group->values[cell] : 0.0;
-
-  return number > -2147483648.0 && number < 2147483648.0 ? (int)number : 0;
+  return group ? EqmGroupOf(group->values[cell]) : 0;
 }

@@ -276,6 +276,6 @@ EQM_DEFINE_FORMAT(Obj) = {.name = "OBJ",
                           .recognise = RecogniseObj,
                           .parse = ParseObj,
                           .parse_part = ParseObjPart,
-                          .write = EqmWriteObj,
+                          .write_stream = EqmWriteObj,
                           .writes_texture = PETSC_TRUE,
                           .groups = PETSC_TRUE};

@@ -5,19 +5,23 @@
 #include "metadata.h"
 #include "polygon.h"
 #include "seam.h"
+#include "stream.h"
 #include "writers.h"
 
 #include <stdio.h>
 
 /* A line `g name` where the group changes. */
-static void PrintGroup(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *group, PetscInt cell)
+static void PrintGroup(EqmAtomicFile *file, EqmMeshStream *stream, const EqmField *group, PetscInt cell)
 {
+  const PetscInt f = EqmStreamIndexOf(stream, group);
+  const PetscReal before = group && cell > 0 ? *EqmStreamField(stream, f, cell - 1) : 0.0;
+  const PetscReal number = group ? *EqmStreamField(stream, f, cell) : 0.0;
   char key[32], name[256];
 
-  if (!group || (cell > 0 && group->values[cell] == group->values[cell - 1])) return;
-  snprintf(key, sizeof(key), EQM_GROUP_KEY, (long long)group->values[cell]);
-  if (!EqmMetadataGet(mesh->metadata, key, name, sizeof(name)))
-    snprintf(name, sizeof(name), group->values[cell] == 0.0 ? "default" : "group_%lld", (long long)group->values[cell]);
+  if (!group || (cell > 0 && number == before)) return;
+  snprintf(key, sizeof(key), EQM_GROUP_KEY, (long long)number);
+  if (!EqmMetadataGet(stream->mesh.metadata, key, name, sizeof(name)))
+    snprintf(name, sizeof(name), number == 0.0 ? "default" : "group_%lld", (long long)number);
   EqmAtomicPrint(file, "g %s\n", name);
 }
 
@@ -53,9 +57,10 @@ static void PrintTexturedFaces(EqmAtomicFile *file, const EqmSerialMesh *mesh, c
 }
 
 /* Texture points, one for each different pair of a vertex and a point, and faces that name both. */
-static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *group,
-                                         const EqmField *polygon)
+static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, EqmMeshStream *stream, const EqmField *group)
 {
+  const EqmSerialMesh *const mesh = &stream->mesh;
+  const EqmField *const polygon = EqmFieldPolygon(stream->fields, stream->num_fields);
   EqmSeams seams;
   PetscInt count;
 
@@ -67,29 +72,28 @@ static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, const EqmSerialMes
   }
   for (PetscInt c = 0; c < mesh->num_cells; c += count) {
     count = CountOfFace(mesh, polygon, c);
-    PrintGroup(file, mesh, group, c);
+    PrintGroup(file, stream, group, c);
     PrintTexturedFaces(file, mesh, &seams, c, count);
   }
   return EqmSeamsReset(&seams);
 }
 
-/* Write an OBJ file. See EqmWriter. */
-PetscErrorCode EqmWriteObj(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
-                           char *error, size_t error_length)
+/* Write an OBJ file. See EqmStreamWriter. */
+PetscErrorCode EqmWriteObj(EqmAtomicFile *file, EqmMeshStream *stream, char *error, size_t error_length)
 {
-  const EqmField *const group = EqmFieldGroup(fields, num_fields);
+  const EqmField *const group = EqmFieldGroup(stream->fields, stream->num_fields);
 
-  EqmTry(EqmRequireTriangles(mesh, "OBJ", error, error_length));
-  for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
+  EqmTry(EqmRequireTriangles(&stream->mesh, "OBJ", error, error_length));
+  for (PetscInt i = 0; i < stream->mesh.num_vertices; ++i) {
     EqmAtomicWrite(file, "v ", 2);
-    EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
+    EqmAtomicPrintReals(file, 3, EqmStreamVertex(stream, i), ' ');
     EqmAtomicWrite(file, "\n", 1);
   }
-  if (mesh->texture) return WriteTexturedFaces(file, mesh, group, EqmFieldPolygon(fields, num_fields));
-  for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    const PetscInt *cell = mesh->cells + 3 * (size_t)i;
+  if (stream->mesh.texture) return WriteTexturedFaces(file, stream, group);
+  for (PetscInt i = 0; i < stream->mesh.num_cells; ++i) {
+    const PetscInt *const cell = EqmStreamCell(stream, i);
 
-    PrintGroup(file, mesh, group, i);
+    PrintGroup(file, stream, group, i);
     EqmAtomicPrint(file, "f %lld %lld %lld\n", (long long)cell[0] + 1, (long long)cell[1] + 1, (long long)cell[2] + 1);
   }
   return 0;

@@ -42,7 +42,7 @@ EQM_DEFINE_FORMAT(Ply) = {.name = "PLY",
                           .recognise = RecognisePly,
                           .parse = ParsePly,
                           .parse_part = EqmPlyParsePart,
-                          .write = EqmWritePly,
+                          .write_stream = EqmWritePly,
                           .writes_texture = PETSC_TRUE,
                           .vertex_fields = PETSC_TRUE,
                           .cell_fields = PETSC_TRUE};

@@ -5,6 +5,7 @@
 #include "input.h"
 #include "scalar.h"
 #include "seam.h"
+#include "stream.h"
 
 #include <string.h>
 
@@ -99,23 +100,24 @@ static const EqmField *FindQuality(const EqmField *fields, PetscInt num_fields, 
   return found;
 }
 
-static void WriteFields(Sink to, const EqmField *fields, PetscInt num_fields, PetscBool on_cells, PetscInt row)
+static void WriteFields(Sink to, EqmMeshStream *stream, PetscBool on_cells, PetscInt row)
 {
-  const EqmField *const quality = FindQuality(fields, num_fields, on_cells);
+  const EqmField *const quality = FindQuality(stream->fields, stream->num_fields, on_cells);
 
-  for (PetscInt f = 0; f < num_fields; ++f) {
-    const size_t width = (size_t)fields[f].width;
-    const PetscReal *const values = fields[f].values + width * (size_t)row;
+  for (PetscInt f = 0; f < stream->num_fields; ++f) {
+    const EqmField *const field = &stream->fields[f];
+    const PetscReal *values;
 
-    if (fields[f].on_cells != on_cells) continue;
-    for (size_t k = 0; k < width; ++k) {
-      if (IsColour(&fields[f]))
+    if (field->on_cells != on_cells) continue;
+    values = EqmStreamField(stream, f, row);
+    for (PetscInt k = 0; k < field->width; ++k) {
+      if (IsColour(field))
         PutByte(to, ToByte(values[k]));
       else
         PutDouble(to, values[k]);
     }
   }
-  if (quality) PutFloat(to, (float)quality->values[row]);
+  if (quality) PutFloat(to, (float)*EqmStreamField(stream, EqmStreamIndexOf(stream, quality), row));
 }
 
 typedef enum { TEXTURE_NONE, TEXTURE_OF_VERTICES, TEXTURE_OF_CORNERS } Texture;
@@ -153,41 +155,42 @@ static PetscErrorCode ChooseTexture(const EqmSerialMesh *mesh, EqmSeams *seams, 
   return 0;
 }
 
-static void WriteVertex(Sink to, const EqmSerialMesh *mesh, PetscInt i, const PetscReal *uv)
+static void WriteVertex(Sink to, const PetscReal x[3], const PetscReal *uv)
 {
-  for (size_t k = 0; k < 3; ++k) PutDouble(to, mesh->vertices[3 * (size_t)i + k]);
+  for (size_t k = 0; k < 3; ++k) PutDouble(to, x[k]);
   for (size_t k = 0; k < 2 && uv; ++k) PutFloat(to, (float)uv[k]);
   for (size_t k = 0; k < 2 && uv; ++k) PutDouble(to, uv[k]);
 }
 
-static void WriteFace(Sink to, const EqmSerialMesh *mesh, PetscInt i, Texture texture)
+/* uv - of the three corners, or NULL. */
+static void WriteFace(Sink to, const PetscInt corner[3], const PetscReal *uv)
 {
   PutByte(to, 3);
-  for (size_t k = 0; k < 3; ++k) PutInteger(to, (int32_t)mesh->cells[3 * (size_t)i + k]);
-  if (texture != TEXTURE_OF_CORNERS) return;
+  for (size_t k = 0; k < 3; ++k) PutInteger(to, (int32_t)corner[k]);
+  if (!uv) return;
   PutByte(to, 6);
-  for (size_t k = 0; k < 6; ++k) PutFloat(to, (float)mesh->texture[6 * (size_t)i + k]);
+  for (size_t k = 0; k < 6; ++k) PutFloat(to, (float)uv[k]);
 }
 
-/* EqmWritePly - write a PLY file. See EqmWriter. */
-PetscErrorCode EqmWritePly(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
-                           char *error, size_t error_length)
+/* EqmWritePly - write a PLY file. See EqmStreamWriter. */
+PetscErrorCode EqmWritePly(EqmAtomicFile *file, EqmMeshStream *stream, char *error, size_t error_length)
 {
+  const EqmSerialMesh *const mesh = &stream->mesh;
   const Sink to = SinkOf(file);
   EqmSeams seams;
   Texture texture;
 
   EqmTry(EqmRequireTriangles(mesh, "PLY", error, error_length));
   EqmTry(ChooseTexture(mesh, &seams, &texture));
-  PrintHeader(file, mesh, fields, num_fields, texture);
+  PrintHeader(file, mesh, stream->fields, stream->num_fields, texture);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
-    WriteVertex(to, mesh, i, texture == TEXTURE_OF_VERTICES ? seams.point + 2 * (size_t)i : NULL);
-    WriteFields(to, fields, num_fields, PETSC_FALSE, i);
+    WriteVertex(to, EqmStreamVertex(stream, i), texture == TEXTURE_OF_VERTICES ? seams.point + 2 * (size_t)i : NULL);
+    WriteFields(to, stream, PETSC_FALSE, i);
     EndRow(to);
   }
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    WriteFace(to, mesh, i, texture);
-    WriteFields(to, fields, num_fields, PETSC_TRUE, i);
+    WriteFace(to, EqmStreamCell(stream, i), texture == TEXTURE_OF_CORNERS ? mesh->texture + 6 * (size_t)i : NULL);
+    WriteFields(to, stream, PETSC_TRUE, i);
     EndRow(to);
   }
   return EqmSeamsReset(&seams);

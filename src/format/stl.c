@@ -3,6 +3,7 @@
 #include "format.h"
 #include "scalar.h"
 #include "stl.h"
+#include "stream.h"
 #include "weld.h"
 
 #include <string.h>
@@ -66,24 +67,32 @@ static PetscErrorCode ParseStl(const char *bytes, size_t length, EqmSerialMesh *
   return EqmBuilderFinish(&builder, ParseMesh(&in, &builder), mesh);
 }
 
-/* Write a binary STL file. See EqmWriter. The format has single precision and no vertices of its own. */
-static PetscErrorCode WriteStl(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
-                               PetscInt num_fields, char *error, size_t error_length)
+/* The points of a triangle's corners, on rank 0. */
+static void TakeCorners(EqmMeshStream *stream, PetscInt cell, PetscReal x[9])
+{
+  if (stream->corner_points) {
+    memcpy(x, EqmColumnRow(&stream->columns[EQM_COLUMN_CORNERS], cell), 9 * sizeof(PetscReal));
+    return;
+  }
+  for (PetscInt k = 0; k < 3; ++k)
+    memcpy(x + 3 * k, EqmStreamVertex(stream, EqmStreamCell(stream, cell)[k]), 3 * sizeof(PetscReal));
+}
+
+/* Write a binary STL file. See EqmStreamWriter. The format has single precision and no vertices of its own. */
+static PetscErrorCode WriteStl(EqmAtomicFile *file, EqmMeshStream *stream, char *error, size_t error_length)
 {
   const char header[HEADER_BYTES] = "equimap binary STL";
-  const uint32_t num_triangles = (uint32_t)mesh->num_cells;
+  const uint32_t num_triangles = (uint32_t)stream->mesh.num_cells;
 
-  EqmTry(EqmRequireTriangles(mesh, "STL", error, error_length));
+  EqmTry(EqmRequireTriangles(&stream->mesh, "STL", error, error_length));
   EqmAtomicWrite(file, header, sizeof(header));
   EqmAtomicWrite(file, &num_triangles, sizeof(num_triangles));
-  for (PetscInt i = 0; i < mesh->num_cells; ++i) {
+  for (PetscInt i = 0; i < stream->mesh.num_cells; ++i) {
     float triangle[12] = {0}; /* a normal of zero: to be computed by who needs it */
+    PetscReal x[9];
 
-    for (PetscInt k = 0; k < 9; ++k) {
-      const size_t vertex = (size_t)mesh->cells[3 * (size_t)i + (size_t)(k / 3)];
-
-      triangle[3 + k] = (float)mesh->vertices[3 * vertex + (size_t)(k % 3)];
-    }
+    TakeCorners(stream, i, x);
+    for (PetscInt k = 0; k < 9; ++k) triangle[3 + k] = (float)x[k];
     EqmAtomicWrite(file, triangle, sizeof(triangle));
     EqmAtomicWrite(file, "\0", 2);
   }
@@ -96,4 +105,5 @@ EQM_DEFINE_FORMAT(Stl) = {.name = "STL",
                           .by_length = PETSC_TRUE,
                           .parse = ParseStl,
                           .parse_part = EqmStlParsePart,
-                          .write = WriteStl};
+                          .write_stream = WriteStl,
+                          .writes_corners = PETSC_TRUE};

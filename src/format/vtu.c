@@ -68,7 +68,7 @@ EQM_DEFINE_FORMAT(Vtu) = {.name = "VTU",
                           .recognise = RecogniseVtu,
                           .parse = ParseVtu,
                           .parse_part = EqmVtuParsePart,
-                          .write = EqmWriteVtu,
+                          .write_stream = EqmWriteVtu,
                           .vertex_fields = PETSC_TRUE,
                           .cell_fields = PETSC_TRUE};
 

@@ -3,6 +3,7 @@
 #include "writers.h"
 #include "input.h"
 #include "scalar.h"
+#include "stream.h"
 
 /* The arrays of the file in the order of their data, to say where each begins before it is written. */
 typedef struct {
@@ -64,37 +65,45 @@ static void PrintDocument(EqmAtomicFile *file, const EqmSerialMesh *mesh, const 
   EqmAtomicPrint(file, "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"base64\">\n_");
 }
 
-static void WriteReals(EqmAtomicFile *file, size_t count, const PetscReal *values)
+/* All rows of a column of reals. */
+static void WriteReals(EqmAtomicFile *file, EqmColumn *column)
 {
-  const uint64_t num_bytes = count * sizeof(double);
+  const uint64_t num_bytes = (uint64_t)column->total * column->row_bytes;
   EqmBase64Writer writer;
 
   EqmBase64Open(&writer, file);
   EqmBase64Write(&writer, &num_bytes, sizeof(num_bytes));
-  EqmBase64Write(&writer, values, num_bytes);
+  for (PetscInt row = 0; row < column->total; row = column->first + column->count) {
+    const void *const rows = EqmColumnRow(column, row);
+
+    EqmBase64Write(&writer, rows, (size_t)(column->first + column->count - row) * column->row_bytes);
+  }
   EqmBase64Close(&writer);
 }
 
-static void WriteFields(EqmAtomicFile *file, const EqmField *fields, PetscInt num_fields, PetscBool on_cells,
-                        size_t count)
+static void WriteFields(EqmAtomicFile *file, EqmMeshStream *stream, PetscBool on_cells)
 {
-  for (PetscInt f = 0; f < num_fields; ++f) {
-    if (fields[f].on_cells == on_cells) WriteReals(file, count * (size_t)fields[f].width, fields[f].values);
+  for (PetscInt f = 0; f < stream->num_fields; ++f) {
+    if (stream->fields[f].on_cells == on_cells) WriteReals(file, &stream->columns[EQM_COLUMN_FIELDS + f]);
   }
 }
 
-static void WriteConnectivity(EqmAtomicFile *file, const EqmSerialMesh *mesh)
+static void WriteConnectivity(EqmAtomicFile *file, EqmMeshStream *stream)
 {
-  const size_t count = (size_t)mesh->cell_size * (size_t)mesh->num_cells;
-  const uint64_t num_bytes = count * sizeof(int64_t);
+  const PetscInt size = stream->mesh.cell_size;
+  const uint64_t num_bytes = (uint64_t)size * (uint64_t)stream->mesh.num_cells * sizeof(int64_t);
   EqmBase64Writer writer;
 
   EqmBase64Open(&writer, file);
   EqmBase64Write(&writer, &num_bytes, sizeof(num_bytes));
-  for (size_t i = 0; i < count; ++i) {
-    const int64_t corner = mesh->cells[i];
+  for (PetscInt i = 0; i < stream->mesh.num_cells; ++i) {
+    const PetscInt *const cell = EqmStreamCell(stream, i);
 
-    EqmBase64Write(&writer, &corner, sizeof(corner));
+    for (PetscInt k = 0; k < size; ++k) {
+      const int64_t corner = cell[k];
+
+      EqmBase64Write(&writer, &corner, sizeof(corner));
+    }
   }
   EqmBase64Close(&writer);
 }
@@ -126,17 +135,16 @@ static void WriteTypes(EqmAtomicFile *file, const EqmSerialMesh *mesh)
   EqmBase64Close(&writer);
 }
 
-/* EqmWriteVtu - write a VTU file, fields as point and cell data. See EqmWriter. */
-PetscErrorCode EqmWriteVtu(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields, PetscInt num_fields,
-                           char *error, size_t error_length)
+/* EqmWriteVtu - write a VTU file, fields as point and cell data. See EqmStreamWriter. */
+PetscErrorCode EqmWriteVtu(EqmAtomicFile *file, EqmMeshStream *stream, char *error, size_t error_length)
 {
-  PrintDocument(file, mesh, fields, num_fields);
-  WriteFields(file, fields, num_fields, PETSC_FALSE, (size_t)mesh->num_vertices);
-  WriteFields(file, fields, num_fields, PETSC_TRUE, (size_t)mesh->num_cells);
-  WriteReals(file, 3 * (size_t)mesh->num_vertices, mesh->vertices);
-  WriteConnectivity(file, mesh);
-  WriteOffsets(file, mesh);
-  WriteTypes(file, mesh);
+  PrintDocument(file, &stream->mesh, stream->fields, stream->num_fields);
+  WriteFields(file, stream, PETSC_FALSE);
+  WriteFields(file, stream, PETSC_TRUE);
+  WriteReals(file, &stream->columns[EQM_COLUMN_VERTICES]);
+  WriteConnectivity(file, stream);
+  WriteOffsets(file, &stream->mesh);
+  WriteTypes(file, &stream->mesh);
   EqmAtomicPrint(file, "\n  </AppendedData>\n</VTKFile>\n");
   return 0;
 }

@@ -3,6 +3,7 @@
 #include "mesh/soup_private.h"
 #include "mesh/fields.h"
 #include "input.h"
+#include "stream.h"
 #include "base/nearest.h"
 
 #include <stdio.h>
@@ -47,6 +48,24 @@ static PetscErrorCode JoinFields(const EqmFormat *format, const EqmSerialMesh *m
   return 0;
 }
 
+/* On rank 0: the whole file, or nothing. A writer that does not take rows one by one gets a mesh that one rank has. */
+static PetscErrorCode WriteFile(const char *file, const EqmFormat *format, EqmMeshStream *stream, char *error,
+                                size_t length)
+{
+  EqmAtomicFile out;
+  char reason[256] = "";
+  PetscErrorCode code = EqmAtomicOpen(file, &out, error, length);
+
+  if (code) return code;
+  code = format->write_stream
+             ? format->write_stream(&out, stream, reason, sizeof(reason))
+             : format->write(&out, &stream->mesh, stream->fields, stream->num_fields, reason, sizeof(reason));
+  if (!code) return EqmAtomicCommit(&out, error, length);
+  snprintf(error, length, "cannot write %s: %s", file, reason);
+  EqmAtomicAbort(&out);
+  return code;
+}
+
 /* EqmFormatWriteSerial - write a mesh, the fields given and its own, the format by suffix, from this rank.
 
    Not collective. The file is there complete or not at all. Errors (quiet, reason in `error`): EQM_ERR_USAGE (unknown
@@ -55,24 +74,16 @@ PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh,
                                     PetscInt num_fields, char *error, size_t length)
 {
   const EqmFormat *format = EqmFormatOfSuffix(file);
-  EqmAtomicFile out;
+  EqmMeshStream stream;
   EqmField *all;
   PetscInt num_all;
-  char reason[256] = "";
   PetscErrorCode code;
 
-  if (!format || !format->write) return RejectSuffix(file, error, length);
+  if (!format || !(format->write || format->write_stream)) return RejectSuffix(file, error, length);
   EqmTry(JoinFields(format, mesh, fields, num_fields, &all, &num_all));
-  code = EqmAtomicOpen(file, &out, error, length);
-  if (!code) {
-    code = format->write(&out, mesh, all, num_all, reason, sizeof(reason));
-    if (!code) {
-      code = EqmAtomicCommit(&out, error, length);
-    } else {
-      snprintf(error, length, "cannot write %s: %s", file, reason);
-      EqmAtomicAbort(&out);
-    }
-  }
+  EqmTry(EqmStreamOpenWhole(&stream, mesh, all, num_all));
+  code = WriteFile(file, format, &stream, error, length);
+  EqmTry(EqmStreamReset(&stream));
   EqmTry(PetscFree(all));
   return code;
 }
@@ -102,19 +113,90 @@ void EqmFormatDescribeDropped(const char *file, PetscBool is_map, PetscInt num_f
 }
 
 /* Gather on rank 0 and write there. */
-static PetscErrorCode WriteFromRoot(EqmSoup soup, const char *file)
+static PetscErrorCode WriteFromRoot(EqmMeshStream *stream, const char *file)
 {
   EqmSerialMesh mesh;
   char error[EQM_MESSAGE_MAX] = "";
   PetscErrorCode code = 0;
-  PetscMPIInt rank;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(soup->comm, &rank));
-  PetscCall(EqmSoupGather(soup, &mesh));
-  if (rank == 0) code = EqmFormatWriteSerial(file, &mesh, NULL, 0, error, sizeof(error));
+  PetscCall(EqmStreamGather(stream, &mesh));
+  PetscCall(EqmMeshFieldsGiveTexture(&mesh));
+  if (stream->rank == 0) code = EqmFormatWriteSerial(file, &mesh, NULL, 0, error, sizeof(error));
   PetscCall(EqmSerialMeshReset(&mesh));
-  PetscCall(EqmAgree(soup->comm, code, error));
+  PetscCall(EqmAgree(stream->comm, code, error));
+  PetscFunctionReturn(0);
+}
+
+/* Rank 0 writes the rows that the others send. */
+static PetscErrorCode WriteRows(EqmMeshStream *stream, const EqmFormat *format, const char *file)
+{
+  char error[EQM_MESSAGE_MAX] = "";
+  PetscErrorCode code = 0;
+
+  PetscFunctionBegin;
+  if (stream->rank) {
+    PetscCall(EqmStreamServe(stream));
+  } else {
+    code = WriteFile(file, format, stream, error, sizeof(error));
+    PetscCall(EqmStreamEnd(stream));
+  }
+  PetscCall(EqmAgree(stream->comm, code, error));
+  PetscFunctionReturn(0);
+}
+
+/* Texture coordinates of the corners? */
+static PetscBool IsTexture(const char *name, PetscBool on_cells, PetscInt width, PetscInt cell_size)
+{
+  return on_cells && width == 2 * cell_size && !strcmp(name, EQM_FIELD_TEXTURE) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Is it left out of a map's file, as the map's own or as what would be taken for it? */
+static PetscBool IsLeftOut(const EqmFormat *format, const EqmMeshField *field, PetscBool is_texture)
+{
+  return EqmMeshFieldIsOfResult(field->name) || (is_texture && format->writes_texture) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The given fields, then the soup's, a texture last. */
+static PetscErrorCode JoinSlabs(const EqmFormat *format, EqmSoup soup, const EqmField *fields, PetscInt num_fields,
+                                PetscBool is_map, EqmField **all, PetscInt *num_all)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(num_fields + soup->num_fields + 1, all));
+  *num_all = 0;
+  for (PetscInt f = 0; f < num_fields; ++f) (*all)[(*num_all)++] = fields[f];
+  for (PetscInt f = 0; f < 2 * soup->num_fields; ++f) {
+    const EqmMeshField *const field = &soup->fields[f % soup->num_fields];
+    const PetscBool is_texture = IsTexture(field->name, field->on_cells, field->width, soup->cell_size);
+
+    if (is_texture != (f >= soup->num_fields ? PETSC_TRUE : PETSC_FALSE)) continue;
+    if (IsTaken(field, fields, num_fields) || (is_map && IsLeftOut(format, field, is_texture))) continue;
+    (*all)[(*num_all)++] = (EqmField){field->name, field->on_cells, field->width, field->values};
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmFormatWriteSlabs(EqmSoup soup, const PetscReal *vertices, const EqmField *fields, PetscInt num_fields,
+                                   PetscBool is_map, const char *file)
+{
+  const EqmFormat *const format = EqmFormatOfSuffix(file);
+  char error[EQM_MESSAGE_MAX] = "";
+  EqmMeshStream stream;
+  EqmField *all;
+  PetscInt num_all;
+  PetscBool by_rows, has_texture = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (!format || !(format->write || format->write_stream))
+    PetscCall(EqmAgree(soup->comm, RejectSuffix(file, error, sizeof(error)), error));
+  PetscCall(JoinSlabs(format, soup, fields, num_fields, is_map, &all, &num_all));
+  if (num_all)
+    has_texture = IsTexture(all[num_all - 1].name, all[num_all - 1].on_cells, all[num_all - 1].width, soup->cell_size);
+  by_rows = format->write_stream && !(has_texture && format->writes_texture) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(EqmStreamOpen(&stream, soup, vertices, all, num_all, by_rows && format->writes_corners));
+  PetscCall(by_rows ? WriteRows(&stream, format, file) : WriteFromRoot(&stream, file));
+  PetscCall(EqmStreamReset(&stream));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 
@@ -129,7 +211,7 @@ PetscErrorCode EqmSoupWrite(EqmSoup soup, const char *file)
   if (format && format->write_parallel) {
     PetscCall(format->write_parallel(soup, file));
   } else {
-    PetscCall(WriteFromRoot(soup, file));
+    PetscCall(EqmFormatWriteSlabs(soup, soup->vertices, NULL, 0, PETSC_FALSE, file));
   }
   PetscFunctionReturn(0);
 }

@@ -34,7 +34,7 @@ static PetscErrorCode CheckSuffix(MPI_Comm comm, const char *file, void *context
 
   PetscFunctionBegin;
   (void)context;
-  if (!EqmHasSuffix(file, ".h5") && !(format && format->write)) {
+  if (!EqmHasSuffix(file, ".h5") && !(format && EqmFormatIsWritable(format))) {
     EqmFormatListSuffixes(PETSC_TRUE, suffixes, sizeof(suffixes));
     PetscCall(EqmDidYouMean(suffix ? suffix : "", suffixes, hint, sizeof(hint)));
     EqmFail(comm, EQM_ERR_USAGE, "cannot write '%s': the suffix says the format, one of %s%s", file, suffixes, hint);

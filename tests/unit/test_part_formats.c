@@ -100,9 +100,51 @@ static PetscErrorCode TestWritten(Text *text)
   PetscFunctionReturn(0);
 }
 
+/* Are the bytes of two files the same? On rank 0. */
+static PetscBool AreEqual(const char *a, const char *b)
+{
+  FILE *const one = fopen(a, "rb"), *const other = fopen(b, "rb");
+  int c = 0, d = 0;
+
+  CHECK(one && other, "cannot read %s and %s", a, b);
+  while (c == d && c != EOF) {
+    c = getc(one);
+    d = getc(other);
+  }
+  fclose(one);
+  fclose(other);
+  return c == d ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Rank 0 writes what the others send, in blocks, as it writes what it has alone. */
+static PetscErrorCode TestBlocks(void)
+{
+  static const char *const suffixes[] = {"ply", "stl", "vtu", "msh", "off"};
+  char alone[300];
+  EqmSoup together, whole;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "hills", 60000, 1, &together));
+  for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(suffixes); f++) {
+    Name(suffixes[f]);
+    snprintf(alone, sizeof(alone), "%s/alone.%s", folder, suffixes[f]);
+    PetscCall(EqmSoupWrite(together, file));
+    if (rank) continue;
+    PetscCall(EqmSoupGenerate(PETSC_COMM_SELF, "hills", 60000, 1, &whole));
+    PetscCall(EqmSoupWrite(whole, alone));
+    PetscCall(EqmSoupDestroy(&whole));
+    CHECK(AreEqual(file, alone), "%s is another file on several ranks", suffixes[f]);
+    CHECK(!unlink(alone), "cannot remove %s", alone);
+  }
+  PetscCall(EqmSoupDestroy(&together));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  static const char *const suffixes[] = {"obj", "ply", "text.ply", "stl", "vtu", "msh"};
+  static const char *const suffixes[] = {"obj", "ply", "text.ply", "stl", "vtu", "msh", "off"};
   Text *text;
 
   PetscFunctionBeginUser;
@@ -111,6 +153,7 @@ int main(int argc, char **argv)
   PetscCall(PetscMalloc1(1, &text));
   PetscCall(TestPly(text));
   PetscCall(TestWritten(text));
+  PetscCall(TestBlocks());
   PetscCall(PetscFree(text));
   PetscCall(RemoveFolder(PETSC_STATIC_ARRAY_LENGTH(suffixes), suffixes));
   PetscCall(EqmFinalize());

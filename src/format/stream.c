@@ -1,0 +1,225 @@
+#include "stream.h"
+#include "input.h"
+#include "base/rows.h"
+#include "mesh/fields.h"
+#include "mesh/soup_private.h"
+
+#include <string.h>
+
+enum { BLOCK_BYTES = 1 << 20, TAG = 7 };
+
+/* What rank 0 asks for: `count` rows of a column from `first` on; column -1: nothing more. For MPI of one type. */
+typedef struct {
+  PetscInt column, first, count;
+} Request;
+
+static void SetColumn(EqmMeshStream *stream, PetscInt number, PetscBool on_cells, PetscInt width, size_t number_bytes,
+                      const void *slab)
+{
+  EqmColumn *const column = &stream->columns[number];
+  const PetscInt total = on_cells ? stream->mesh.num_cells : stream->mesh.num_vertices;
+
+  *column = (EqmColumn){.stream = stream,
+                        .number = number,
+                        .width = width,
+                        .total = total,
+                        .row_bytes = number_bytes * (size_t)width,
+                        .start = on_cells ? stream->cell_start : stream->vertex_start,
+                        .slab = slab,
+                        .count = total,
+                        .rows = slab};
+  if (column->start) {
+    column->first = column->start[stream->rank];
+    column->count = column->start[stream->rank + 1] - column->first;
+  }
+}
+
+static PetscErrorCode SetColumns(EqmMeshStream *stream, const PetscReal *vertices, const PetscInt *cells)
+{
+  stream->num_columns = EQM_COLUMN_FIELDS + stream->num_fields;
+  EqmTry(PetscCalloc1(stream->num_columns, &stream->columns));
+  SetColumn(stream, EQM_COLUMN_VERTICES, PETSC_FALSE, 3, sizeof(PetscReal), vertices);
+  SetColumn(stream, EQM_COLUMN_CELLS, PETSC_TRUE, stream->mesh.cell_size, sizeof(PetscInt), cells);
+  SetColumn(stream, EQM_COLUMN_CORNERS, PETSC_TRUE, 3 * stream->mesh.cell_size, sizeof(PetscReal),
+            stream->corner_points);
+  for (PetscInt f = 0; f < stream->num_fields; ++f) {
+    const EqmField *const field = &stream->fields[f];
+
+    SetColumn(stream, EQM_COLUMN_FIELDS + f, field->on_cells, field->width, sizeof(PetscReal), field->values);
+  }
+  return 0;
+}
+
+PetscErrorCode EqmStreamOpenWhole(EqmMeshStream *stream, const EqmSerialMesh *mesh, const EqmField *fields,
+                                  PetscInt num_fields)
+{
+  *stream =
+      (EqmMeshStream){.comm = PETSC_COMM_SELF, .size = 1, .mesh = *mesh, .num_fields = num_fields, .fields = fields};
+  return SetColumns(stream, mesh->vertices, mesh->cells);
+}
+
+/* First rows of all ranks' slabs. Collective. */
+static PetscErrorCode ShareStarts(const EqmMeshStream *stream, PetscInt end, PetscInt **start)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(stream->size + 1, start));
+  (*start)[0] = 0;
+  PetscCallMPI(MPI_Allgather(&end, 1, MPIU_INT, *start + 1, 1, MPIU_INT, stream->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmStreamOpen(EqmMeshStream *stream, EqmSoup soup, const PetscReal *vertices, const EqmField *fields,
+                             PetscInt num_fields, PetscBool with_corners)
+{
+  const PetscInt num_corners = soup->cell_size * (soup->cell_end - soup->cell_start);
+
+  PetscFunctionBegin;
+  *stream = (EqmMeshStream){.comm = soup->comm, .num_fields = num_fields, .fields = fields};
+  PetscCallMPI(MPI_Comm_rank(soup->comm, &stream->rank));
+  PetscCallMPI(MPI_Comm_size(soup->comm, &stream->size));
+  stream->mesh = (EqmSerialMesh){.num_vertices = soup->num_vertices,
+                                 .num_cells = soup->num_cells,
+                                 .cell_size = soup->cell_size,
+                                 .metadata = soup->metadata};
+  PetscCall(ShareStarts(stream, soup->vertex_end, &stream->vertex_start));
+  PetscCall(ShareStarts(stream, soup->cell_end, &stream->cell_start));
+  if (with_corners) {
+    PetscCall(PetscMalloc1(3 * (size_t)num_corners, &stream->corner_points));
+    PetscCall(EqmFetchRows(soup->comm, soup->vertex_end - soup->vertex_start, num_corners, soup->cells, MPIU_REAL, 3,
+                           vertices, stream->corner_points));
+  }
+  PetscCall(SetColumns(stream, vertices, soup->cells));
+  for (PetscInt c = 0; c < stream->num_columns && stream->size > 1 && stream->rank == 0; ++c)
+    PetscCall(PetscMalloc(PetscMax((size_t)BLOCK_BYTES, stream->columns[c].row_bytes), &stream->columns[c].block));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmStreamReset(EqmMeshStream *stream)
+{
+  for (PetscInt c = 0; c < stream->num_columns; ++c) EqmTry(PetscFree(stream->columns[c].block));
+  EqmTry(PetscFree(stream->columns));
+  EqmTry(PetscFree(stream->vertex_start));
+  EqmTry(PetscFree(stream->cell_start));
+  return PetscFree(stream->corner_points);
+}
+
+/* The rows of a request that a rank has: *count from *first on. */
+static void Intersect(const EqmColumn *column, const Request *request, PetscMPIInt rank, PetscInt *first,
+                      PetscInt *count)
+{
+  *first = PetscMax(request->first, column->start[rank]);
+  *count = PetscMax(0, PetscMin(request->first + request->count, column->start[rank + 1]) - *first);
+}
+
+PetscErrorCode EqmStreamServe(EqmMeshStream *stream)
+{
+  Request request;
+  PetscInt first, count;
+
+  PetscFunctionBegin;
+  for (;;) {
+    PetscCallMPI(MPI_Bcast(&request, 3, MPIU_INT, 0, stream->comm));
+    if (request.column < 0) PetscFunctionReturn(0);
+    const EqmColumn *const column = &stream->columns[request.column];
+
+    Intersect(column, &request, stream->rank, &first, &count);
+    if (!count) continue;
+    PetscCallMPI(MPI_Send(column->slab + (size_t)(first - column->start[stream->rank]) * column->row_bytes,
+                          (PetscMPIInt)((size_t)count * column->row_bytes), MPI_BYTE, 0, TAG, stream->comm));
+  }
+}
+
+PetscErrorCode EqmStreamEnd(EqmMeshStream *stream)
+{
+  Request request = {-1, 0, 0};
+
+  PetscFunctionBegin;
+  if (stream->size > 1) PetscCallMPI(MPI_Bcast(&request, 3, MPIU_INT, 0, stream->comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Receive(EqmColumn *column, Request request)
+{
+  const EqmMeshStream *const stream = column->stream;
+  PetscInt first, count;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Bcast(&request, 3, MPIU_INT, 0, stream->comm));
+  for (PetscMPIInt r = 0; r < stream->size; ++r) {
+    char *const rows = column->block;
+
+    Intersect(column, &request, r, &first, &count);
+    if (!count) continue;
+    const size_t at = (size_t)(first - request.first) * column->row_bytes, bytes = (size_t)count * column->row_bytes;
+
+    if (r == 0) {
+      memcpy(rows + at, column->slab + (size_t)first * column->row_bytes, bytes);
+    } else {
+      PetscCallMPI(MPI_Recv(rows + at, (PetscMPIInt)bytes, MPI_BYTE, r, TAG, stream->comm, MPI_STATUS_IGNORE));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+void EqmColumnFetch(EqmColumn *column, PetscInt row)
+{
+  const PetscInt most = PetscMax(1, (PetscInt)((size_t)BLOCK_BYTES / column->row_bytes));
+  Request request = {column->number, row, PetscMin(most, column->total - row)};
+
+  if (row < column->start[1]) { /* rank 0 has it itself */
+    column->first = 0;
+    column->count = column->start[1];
+    column->rows = column->slab;
+    return;
+  }
+  PetscCallAbort(column->stream->comm, Receive(column, request)); /* the other ranks wait for rank 0 */
+  column->first = request.first;
+  column->count = request.count;
+  column->rows = column->block;
+}
+
+/* On rank 0: all rows. */
+static void CopyColumn(EqmColumn *column, void *all)
+{
+  for (PetscInt row = 0; row < column->total; row = column->first + column->count) {
+    const char *const rows = EqmColumnRow(column, row);
+    const size_t count = (size_t)(column->first + column->count - row);
+
+    memcpy((char *)all + (size_t)row * column->row_bytes, rows, count * column->row_bytes);
+  }
+}
+
+static PetscErrorCode GatherHere(EqmMeshStream *stream, EqmSerialMesh *mesh)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscStrallocpy(stream->mesh.metadata, &mesh->metadata));
+  PetscCall(PetscMalloc1(3 * (size_t)mesh->num_vertices, &mesh->vertices));
+  PetscCall(PetscMalloc1((size_t)mesh->cell_size * (size_t)mesh->num_cells, &mesh->cells));
+  CopyColumn(&stream->columns[EQM_COLUMN_VERTICES], mesh->vertices);
+  CopyColumn(&stream->columns[EQM_COLUMN_CELLS], mesh->cells);
+  for (PetscInt f = 0; f < stream->num_fields; ++f) {
+    const EqmField *const field = &stream->fields[f];
+    EqmMeshField kind = {.on_cells = field->on_cells, .width = field->width};
+    PetscReal *values;
+
+    PetscCall(PetscStrncpy(kind.name, field->name, sizeof(kind.name)));
+    PetscCall(EqmMeshFieldsAdd(&mesh->num_fields, &mesh->fields, &kind,
+                               (size_t)(field->on_cells ? mesh->num_cells : mesh->num_vertices), &values));
+    CopyColumn(&stream->columns[EQM_COLUMN_FIELDS + f], values);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmStreamGather(EqmMeshStream *stream, EqmSerialMesh *mesh)
+{
+  PetscFunctionBegin;
+  *mesh = (EqmSerialMesh){0};
+  if (stream->rank) {
+    PetscCall(EqmStreamServe(stream));
+    PetscFunctionReturn(0);
+  }
+  *mesh = stream->mesh;
+  PetscCall(GatherHere(stream, mesh));
+  PetscCall(EqmStreamEnd(stream));
+  PetscFunctionReturn(0);
+}
