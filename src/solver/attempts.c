@@ -79,13 +79,14 @@ static PetscBool IsDisappointing(EqmSolver solver, PetscReal far_energy)
   return (PetscBool)(solver->iterate->totals.folds > 0 || IsOff(solver, far_energy));
 }
 
-/* E and the terms. */
+/* E and the terms; without them E per area of the image, which is how far ratios are off: a map of few boundary
+   vertices has less E where its image is small. */
 static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, PetscReal *value)
 {
   PetscReal *image;
 
   PetscFunctionBegin;
-  *value = iterate->totals.energy;
+  *value = problem->terms ? iterate->totals.energy : iterate->totals.energy / iterate->totals.total;
   if (!problem->terms) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(problem->mesh->num_local_cells, &image));
   PetscCall(EqmProblemEvaluate(problem, iterate, &iterate->place, image, value, NULL));
@@ -93,7 +94,7 @@ static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, PetscReal
   PetscFunctionReturn(0);
 }
 
-/* Fewer folds, or as many and a lower objective. */
+/* Fewer folds, or as many and a lower value. */
 static PetscErrorCode IsBetter(EqmProblem problem, EqmIterate a, EqmIterate b, PetscBool *better)
 {
   PetscReal of_a, of_b;
