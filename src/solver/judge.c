@@ -179,6 +179,17 @@ PetscErrorCode EqmJudgeEnd(EqmSolver solver, EqmStep outcome)
   PetscFunctionReturn(0);
 }
 
+/* Did the objective fall by more than a ten-thousandth over the last iterations? On strips ten thousands of times as
+   long as wide steps are short, as the circle bends within them by more than a cell: E hardly falls for a hundred. */
+static PetscBool StillFalls(EqmSolver solver)
+{
+  const PetscInt last = solver->num_history - 1, before = last - solver->settings.stagnation;
+  const PetscReal least = 1e-4;
+
+  return (PetscBool)(before >= 0 && solver->objectives[before] - solver->objectives[last] >
+                                        least * PetscAbsReal(solver->objectives[before]));
+}
+
 PetscErrorCode EqmJudgePoor(EqmSolver solver)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
@@ -189,8 +200,9 @@ PetscErrorCode EqmJudgePoor(EqmSolver solver)
   if (!solver->poor) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(solver->message + strlen(solver->message), sizeof(solver->message) - strlen(solver->message),
                           "; the map is poor, far from equal %s: ratios are off by %.2g, root mean square (the target "
-                          "may not suit the mesh: corners, slivers, thin limbs?)",
-                          measures, (double)PetscSqrtReal(totals->energy / totals->total)));
+                          "may not suit the mesh: corners, slivers, thin limbs?)%s",
+                          measures, (double)PetscSqrtReal(totals->energy / totals->total),
+                          StillFalls(solver) ? "; the objective still fell: -energy_rtol 0 -max_it 500 goes on" : ""));
   PetscFunctionReturn(0);
 }
 
