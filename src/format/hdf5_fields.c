@@ -82,7 +82,24 @@ PetscBool EqmSoupHasFieldHdf5(EqmSoup soup, const EqmMeshField *field, char *pat
   return IsTaken(soup, field, PETSC_TRUE) ? PETSC_FALSE : PETSC_TRUE;
 }
 
-PetscErrorCode EqmSoupDeclareFieldsHdf5(EqmH5 h5, EqmSoup soup, PetscBool of_result)
+/* What is done with a field and its array. Collective. */
+typedef PetscErrorCode (*FieldAction)(EqmH5 h5, const char *path, EqmSlab slab, const PetscReal *values);
+
+static PetscErrorCode Declare(EqmH5 h5, const char *path, EqmSlab slab, const PetscReal *values)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmH5DeclareReals(h5, path, slab.total, slab.width));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Write(EqmH5 h5, const char *path, EqmSlab slab, const PetscReal *values)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmH5WriteReals(h5, path, slab, values));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ForEachField(EqmH5 h5, EqmSoup soup, PetscBool of_result, FieldAction action)
 {
   char path[EQM_H5_NAME + 16];
 
@@ -92,25 +109,22 @@ PetscErrorCode EqmSoupDeclareFieldsHdf5(EqmH5 h5, EqmSoup soup, PetscBool of_res
 
     if (IsTaken(soup, field, of_result)) continue;
     PathOf(field->name, field->on_cells, path, sizeof(path));
-    PetscCall(EqmH5DeclareReals(h5, path, field->on_cells ? soup->num_cells : soup->num_vertices,
-                                field->width == 1 ? 0 : field->width));
+    PetscCall(action(h5, path, SlabOf(soup, field->on_cells, field->width == 1 ? 0 : field->width), field->values));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSoupDeclareFieldsHdf5(EqmH5 h5, EqmSoup soup, PetscBool of_result)
+{
+  PetscFunctionBegin;
+  PetscCall(ForEachField(h5, soup, of_result, Declare));
   if (soup->metadata) PetscCall(EqmH5PutText(h5, metadata_name, soup->metadata));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmSoupWriteFieldsHdf5(EqmH5 h5, EqmSoup soup, PetscBool of_result)
 {
-  char path[EQM_H5_NAME + 16];
-
   PetscFunctionBegin;
-  for (PetscInt f = 0; f < soup->num_fields; ++f) {
-    const EqmMeshField *const field = &soup->fields[f];
-
-    if (IsTaken(soup, field, of_result)) continue;
-    PathOf(field->name, field->on_cells, path, sizeof(path));
-    PetscCall(
-        EqmH5WriteReals(h5, path, SlabOf(soup, field->on_cells, field->width == 1 ? 0 : field->width), field->values));
-  }
+  PetscCall(ForEachField(h5, soup, of_result, Write));
   PetscFunctionReturn(0);
 }

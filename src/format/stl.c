@@ -68,14 +68,13 @@ static PetscErrorCode ParseStl(const char *bytes, size_t length, EqmSerialMesh *
 }
 
 /* The points of a triangle's corners, on rank 0. */
-static void TakeCorners(EqmMeshStream *stream, PetscInt cell, PetscReal x[9])
+static void TakeCorners(EqmMeshStream *stream, PetscInt cell, float x[9])
 {
   if (stream->corner_points) {
-    memcpy(x, EqmColumnRow(&stream->columns[EQM_COLUMN_CORNERS], cell), 9 * sizeof(PetscReal));
+    memcpy(x, EqmColumnRow(&stream->columns[EQM_COLUMN_CORNERS], cell), 9 * sizeof(float));
     return;
   }
-  for (PetscInt k = 0; k < 3; ++k)
-    memcpy(x + 3 * k, EqmStreamVertex(stream, EqmStreamCell(stream, cell)[k]), 3 * sizeof(PetscReal));
+  for (PetscInt k = 0; k < 9; ++k) x[k] = (float)EqmStreamVertex(stream, EqmStreamCell(stream, cell)[k / 3])[k % 3];
 }
 
 /* Write a binary STL file. See EqmStreamWriter. The format has single precision and no vertices of its own. */
@@ -89,10 +88,8 @@ static PetscErrorCode WriteStl(EqmAtomicFile *file, EqmMeshStream *stream, char 
   EqmAtomicWrite(file, &num_triangles, sizeof(num_triangles));
   for (PetscInt i = 0; i < stream->mesh.num_cells; ++i) {
     float triangle[12] = {0}; /* a normal of zero: to be computed by who needs it */
-    PetscReal x[9];
 
-    TakeCorners(stream, i, x);
-    for (PetscInt k = 0; k < 9; ++k) triangle[3 + k] = (float)x[k];
+    TakeCorners(stream, i, triangle + 3);
     EqmAtomicWrite(file, triangle, sizeof(triangle));
     EqmAtomicWrite(file, "\0", 2);
   }

@@ -40,8 +40,7 @@ static PetscErrorCode SetColumns(EqmMeshStream *stream, const PetscReal *vertice
   EqmTry(PetscCalloc1(stream->num_columns, &stream->columns));
   SetColumn(stream, EQM_COLUMN_VERTICES, PETSC_FALSE, 3, sizeof(PetscReal), vertices);
   SetColumn(stream, EQM_COLUMN_CELLS, PETSC_TRUE, stream->mesh.cell_size, sizeof(PetscInt), cells);
-  SetColumn(stream, EQM_COLUMN_CORNERS, PETSC_TRUE, 3 * stream->mesh.cell_size, sizeof(PetscReal),
-            stream->corner_points);
+  SetColumn(stream, EQM_COLUMN_CORNERS, PETSC_TRUE, 3 * stream->mesh.cell_size, sizeof(float), stream->corner_points);
   for (PetscInt f = 0; f < stream->num_fields; ++f) {
     const EqmField *const field = &stream->fields[f];
 
@@ -68,11 +67,31 @@ static PetscErrorCode ShareStarts(const EqmMeshStream *stream, PetscInt end, Pet
   PetscFunctionReturn(0);
 }
 
+/* The points of the corners of this rank's cells, so many corners at a time. Collective. */
+static PetscErrorCode FetchCorners(EqmMeshStream *stream, EqmSoup soup, const PetscReal *vertices)
+{
+  const PetscInt64 num_corners = (PetscInt64)soup->cell_size * (soup->cell_end - soup->cell_start), some = 1 << 17;
+  PetscInt64 most;
+  PetscReal *points;
+
+  PetscFunctionBegin;
+  PetscCall(MPIU_Allreduce(&num_corners, &most, 1, MPIU_INT64, MPI_MAX, soup->comm));
+  PetscCall(PetscMalloc1(3 * (size_t)num_corners, &stream->corner_points));
+  PetscCall(PetscMalloc1(3 * (size_t)some, &points));
+  for (PetscInt64 at = 0; at < most; at += some) {
+    const PetscInt64 count = PetscMax(0, PetscMin(some, num_corners - at));
+
+    PetscCall(EqmFetchRows(soup->comm, soup->vertex_end - soup->vertex_start, (PetscInt)count,
+                           count ? soup->cells + at : NULL, MPIU_REAL, 3, vertices, points));
+    for (PetscInt64 k = 0; k < 3 * count; ++k) stream->corner_points[3 * at + k] = (float)points[k];
+  }
+  PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmStreamOpen(EqmMeshStream *stream, EqmSoup soup, const PetscReal *vertices, const EqmField *fields,
                              PetscInt num_fields, PetscBool with_corners)
 {
-  const PetscInt num_corners = soup->cell_size * (soup->cell_end - soup->cell_start);
-
   PetscFunctionBegin;
   *stream = (EqmMeshStream){.comm = soup->comm, .num_fields = num_fields, .fields = fields};
   PetscCallMPI(MPI_Comm_rank(soup->comm, &stream->rank));
@@ -83,11 +102,7 @@ PetscErrorCode EqmStreamOpen(EqmMeshStream *stream, EqmSoup soup, const PetscRea
                                  .metadata = soup->metadata};
   PetscCall(ShareStarts(stream, soup->vertex_end, &stream->vertex_start));
   PetscCall(ShareStarts(stream, soup->cell_end, &stream->cell_start));
-  if (with_corners) {
-    PetscCall(PetscMalloc1(3 * (size_t)num_corners, &stream->corner_points));
-    PetscCall(EqmFetchRows(soup->comm, soup->vertex_end - soup->vertex_start, num_corners, soup->cells, MPIU_REAL, 3,
-                           vertices, stream->corner_points));
-  }
+  if (with_corners && stream->size > 1) PetscCall(FetchCorners(stream, soup, vertices));
   PetscCall(SetColumns(stream, vertices, soup->cells));
   for (PetscInt c = 0; c < stream->num_columns && stream->size > 1 && stream->rank == 0; ++c)
     PetscCall(PetscMalloc(PetscMax((size_t)BLOCK_BYTES, stream->columns[c].row_bytes), &stream->columns[c].block));

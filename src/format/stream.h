@@ -28,7 +28,7 @@ struct EqmMeshStream {
   PetscInt *vertex_start, *cell_start;
   PetscInt num_columns; /* vertices, cells, corners, and one per field */
   EqmColumn *columns;
-  PetscReal *corner_points;
+  float *corner_points; /* on several ranks, if wanted: 3 per corner of this rank's cells */
 };
 
 /* Which column is which; EQM_COLUMN_FIELDS + f is that of field f. */

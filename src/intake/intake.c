@@ -138,7 +138,7 @@ static PetscErrorCode Refuse(EqmIntake *intake, const EqmIntakeOptions *options,
           hope);
 }
 
-PetscErrorCode EqmIntakeReadSoup(MPI_Comm comm, const EqmIntakeOptions *options, EqmIntake *intake, EqmSoup *plain)
+static PetscErrorCode ReadSoup(MPI_Comm comm, const EqmIntakeOptions *options, EqmIntake *intake, EqmSoup *plain)
 {
   PetscFunctionBegin;
   if (options->is_copy)
@@ -155,6 +155,29 @@ PetscErrorCode EqmIntakeReadSoup(MPI_Comm comm, const EqmIntakeOptions *options,
   PetscCall(EqmSoupCopy(intake->given, plain));
   PetscCall(EqmSoupAddNoise(intake->given, ldexp(options->noise, (int)-intake->unit), options->seed));
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmIntakeBegin(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger, EqmIntake *intake,
+                              EqmSoup *plain)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(intake, sizeof(*intake)));
+  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_READ));
+  PetscCall(ReadSoup(comm, options, intake, plain));
+  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
+  intake->mapped = intake->given;
+  if (!options->quiet && (*plain)->note[0])
+    PetscCall(PetscPrintf(comm, "note: %s: %s\n", (*plain)->file, (*plain)->note));
+  PetscFunctionReturn(0);
+}
+
+EqmPrepareOptions EqmIntakePrepareOptions(const EqmIntakeOptions *options)
+{
+  EqmPrepareOptions prepare = options->prepare;
+
+  prepare.repair = options->repair;
+  prepare.target = options->target;
+  return prepare;
 }
 
 /* The copy beside the checkpoint, in the file's unit. */
@@ -181,20 +204,13 @@ static PetscErrorCode Keep(EqmSoup soup, PetscInt unit, const EqmIntakeOptions *
 PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger, EqmIntake *intake)
 {
   char text[4 * EQM_MESSAGE_MAX];
-  EqmPrepareOptions prepare = options->prepare;
+  const EqmPrepareOptions prepare = EqmIntakePrepareOptions(options);
   EqmSoup plain;
   PetscBool fatal;
 
   PetscFunctionBegin;
-  PetscCall(PetscMemzero(intake, sizeof(*intake)));
-  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_READ));
-  PetscCall(EqmIntakeReadSoup(comm, options, intake, &plain));
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
+  PetscCall(EqmIntakeBegin(comm, options, ledger, intake, &plain));
   PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_DIAGNOSE));
-  intake->mapped = intake->given;
-  if (!options->quiet && plain->note[0]) PetscCall(PetscPrintf(comm, "note: %s: %s\n", plain->file, plain->note));
-  prepare.repair = options->repair;
-  prepare.target = options->target;
   PetscCall(EqmIntakePrepare(&prepare, intake));
   if (!options->quiet) PetscCall(EqmPrintPreparation(comm, options->part, &intake->preparation));
   if (options->repair && !options->quiet) PetscCall(EqmPrintRepair(comm, options->part, &intake->repair));

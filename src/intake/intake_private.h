@@ -4,9 +4,12 @@
 
 #include "intake/intake.h"
 
-/* The mesh as the file has it, with its density, and then with noise; `plain` is the one without. Collective. */
-PETSC_INTERN PetscErrorCode EqmIntakeReadSoup(MPI_Comm comm, const EqmIntakeOptions *options, EqmIntake *intake,
-                                              EqmSoup *plain);
+/* Begin: the mesh as the file has it, with its density, and then with noise; `plain` is the one without, to be
+   destroyed where it is another. Collective. */
+PETSC_INTERN PetscErrorCode EqmIntakeBegin(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger,
+                                           EqmIntake *intake, EqmSoup *plain);
+/* The options of a preparation for the target. Not collective. */
+PETSC_INTERN EqmPrepareOptions EqmIntakePrepareOptions(const EqmIntakeOptions *options);
 /* Prepare a copy of the input; if nothing changes, the input itself is mapped. Collective. */
 PETSC_INTERN PetscErrorCode EqmIntakePrepare(const EqmPrepareOptions *options, EqmIntake *intake);
 /* Diagnose the mesh: topology, target (the named one or that of the topology), defects. Collective. */

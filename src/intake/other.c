@@ -8,36 +8,39 @@ PetscErrorCode EqmIntakeReadGiven(MPI_Comm comm, const EqmIntakeOptions *options
   EqmSoup plain;
 
   PetscFunctionBegin;
-  PetscCall(PetscMemzero(intake, sizeof(*intake)));
-  PetscCall(EqmPhaseBegin(ledger, EQM_PHASE_READ));
-  PetscCall(EqmIntakeReadSoup(comm, options, intake, &plain));
-  PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_READ));
-  intake->mapped = intake->given;
-  if (!options->quiet && plain->note[0]) PetscCall(PetscPrintf(comm, "note: %s: %s\n", plain->file, plain->note));
+  PetscCall(EqmIntakeBegin(comm, options, ledger, intake, &plain));
   if (plain != intake->given) PetscCall(EqmSoupDestroy(&plain));
+  PetscFunctionReturn(0);
+}
+
+/* Prepare the mesh that was read anew, and diagnose what comes out. Collective. */
+static PetscErrorCode PrepareAnew(const char *target, const EqmPrepareOptions *prepare, const EqmIntake *intake,
+                                  EqmIntake *other, PetscBool *can, char *text, size_t length)
+{
+  PetscBool fatal;
+
+  PetscFunctionBegin;
+  *other = (EqmIntake){.given = intake->given, .mapped = intake->given};
+  PetscCall(EqmIntakePrepare(prepare, other));
+  PetscCall(EqmIntakeDiagnose(target, PETSC_FALSE, other, &fatal, text, length));
+  *can = (PetscBool)!fatal;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode EqmIntakePiece(const EqmIntakeOptions *options, const EqmIntake *intake, EqmIntake *piece,
                               PetscInt *num_pieces, PetscBool *can, char *reason, size_t length)
 {
-  EqmPrepareOptions prepare = options->prepare;
-  PetscBool fatal;
+  EqmPrepareOptions prepare = EqmIntakePrepareOptions(options);
   char *end;
 
   PetscFunctionBegin;
-  *piece = (EqmIntake){.given = intake->given, .mapped = intake->given};
-  prepare.repair = options->repair;
-  prepare.target = options->target;
   prepare.each_piece = PETSC_TRUE;
-  PetscCall(EqmIntakePrepare(&prepare, piece));
+  PetscCall(PrepareAnew(options->target, &prepare, intake, piece, can, reason, length));
   *num_pieces = 1;
   for (PetscInt s = 0; s < piece->preparation.num_steps; s++) {
     if (!strcmp(piece->preparation.step[s].step, "largest"))
       *num_pieces = (PetscInt)piece->preparation.step[s].count + 1;
   }
-  PetscCall(EqmIntakeDiagnose(options->target, PETSC_FALSE, piece, &fatal, reason, length));
-  *can = (PetscBool)!fatal;
   end = strchr(reason, '\n');
   if (end) *end = '\0';
   if (!strncmp(reason, "error: ", 7)) memmove(reason, reason + 7, strlen(reason + 7) + 1);
@@ -52,16 +55,10 @@ PetscErrorCode EqmIntakeWithoutSplits(const EqmIntakeOptions *options, const Eqm
                                       PetscBool *can)
 {
   char text[4 * EQM_MESSAGE_MAX];
-  EqmPrepareOptions prepare = options->prepare;
-  PetscBool fatal;
+  EqmPrepareOptions prepare = EqmIntakePrepareOptions(options);
 
   PetscFunctionBegin;
-  *whole = (EqmIntake){.given = intake->given, .mapped = intake->given};
-  prepare.repair = options->repair;
-  prepare.target = options->target;
   prepare.keeps_cells = PETSC_TRUE;
-  PetscCall(EqmIntakePrepare(&prepare, whole));
-  PetscCall(EqmIntakeDiagnose(options->target, PETSC_FALSE, whole, &fatal, text, sizeof(text)));
-  *can = (PetscBool)!fatal;
+  PetscCall(PrepareAnew(options->target, &prepare, intake, whole, can, text, sizeof(text)));
   PetscFunctionReturn(0);
 }

@@ -110,20 +110,21 @@ static PetscErrorCode ListCells(EqmSoup soup, const EqmFlatPatch *patch, EqmCell
 /* What became of the vertices: those that were joined have the number of the other one. */
 static PetscErrorCode Renumber(EqmFlatPatch *patch, EqmChange *change)
 {
-  PetscInt num = patch->num_joined, *from = NULL, *to = NULL;
+  PetscInt num = patch->num_joined, *from = NULL, *to = NULL, *last = NULL;
   const MPI_Comm comm = change->soup->comm;
   PetscMPIInt rank;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank == 0) PetscCall(PetscMalloc2(num + 1, &from, num + 1, &to));
+  PetscCall(PetscMalloc1(patch->num_vertices, &last)); /* per vertex of the patch: where it ends */
+  for (PetscInt v = 0; v < patch->num_vertices; v++) last[v] = v;
   for (PetscInt k = num - 1; k >= 0; k--) { /* a vertex that others went to may itself have gone on later */
+    last[patch->joined[k]] = last[patch->onto[k]];
     from[k] = patch->number[patch->joined[k]];
-    to[k] = patch->number[patch->onto[k]];
-    for (PetscInt l = k + 1; l < num; l++) {
-      if (from[l] == to[k]) to[k] = to[l];
-    }
+    to[k] = patch->number[last[patch->joined[k]]];
   }
+  PetscCall(PetscFree(last));
   PetscCall(PetscSortIntWithArray(num, from, to));
   PetscCallMPI(MPI_Bcast(&num, 1, MPIU_INT, 0, comm));
   if (rank) PetscCall(PetscMalloc2(num + 1, &from, num + 1, &to));

@@ -5,6 +5,7 @@ usage: python3 test_prepare.py EQUIMAP [RANKS]
 """
 import json
 import os
+import resource
 import sys
 
 import h5py
@@ -174,6 +175,24 @@ def test_flat(program):
             assert (image[twins] == image[original]).all(), "both vertices of a needle have one image"
 
 
+def test_chain(program):
+    """Vertices at one place, each collapsed onto the next: as many as there are, the work grows no faster. The limit is ten times
+    what the program takes, and half of what it takes if it looks through them all for each."""
+    copies = 60000
+    columns = numpy.concatenate([numpy.arange(6), numpy.full(copies, 5), numpy.arange(6, 11)]).astype(float)
+    n = len(columns)
+    points = numpy.array([[x, y, 0.1 * x * y] for y in range(4) for x in columns])
+    corner = (numpy.arange(3)[:, None] * n + numpy.arange(n - 1)).ravel()
+    cells = numpy.concatenate([numpy.column_stack([corner, corner + 1, corner + 1 + n]), numpy.column_stack([corner, corner + 1 + n, corner + n])])
+    write_obj(program, "chain.obj", points, cells)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    program.succeed("convert", "chain.obj", "mended.obj", "-prepare", "flat", ranks=1)
+    assert resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before < 5
+    points, cells = read_obj(program.file("mended.obj"))
+    used, place = points[cells], {tuple(x) for x in points}
+    assert len(cells) == 60 and (areas(points, cells) > 0.1).all() and len(place) == 44 and len({tuple(x) for x in used.reshape(-1, 3)}) == 44
+
+
 def test_cavities(program):
     """Cavities of a solid are filled around a vertex in their middle; one that is bent too much for that is left."""
     bent = {(5, 1, 1), (5, 2, 1), (6, 1, 1), (7, 1, 1), (7, 2, 1)}
@@ -246,6 +265,8 @@ def main(program):
     test_hole_weight_on_sphere(program)
     test_seam(program)
     test_flat(program)
+    if program.ranks == 1:
+        test_chain(program)
     test_cavities(program)
     test_handle(program)
     test_usage(program)
