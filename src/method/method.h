@@ -91,13 +91,15 @@ PETSC_INTERN PetscErrorCode EqmMethodCreateQiem(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateEulerExplicit(EqmMethod method);
 PETSC_INTERN PetscErrorCode EqmMethodCreateEulerImplicit(EqmMethod method);
 
-/* ---- settings that depend on the target (lbfgs.c, lm_settings.c) */
+/* ---- settings that depend on the target (lbfgs.c, lm_settings.c, newton.c) */
 typedef enum { EQM_SEARCH_ARMIJO, EQM_SEARCH_WOLFE } EqmLbfgsLineSearch;
 PETSC_INTERN PetscErrorCode EqmLbfgsSetMemory(EqmMethod lbfgs, PetscInt memory);
 PETSC_INTERN PetscErrorCode EqmLbfgsSetLineSearch(EqmMethod lbfgs, EqmLbfgsLineSearch search);
 /* Restart at the present map, whose objective may have changed: without pairs, with a metric from here. Collective.
  */
 PETSC_INTERN PetscErrorCode EqmLbfgsRestart(EqmMethod lbfgs, EqmIterate iterate);
+/* Newton on the sphere: the barrier's first weight. Not collective. */
+PETSC_INTERN PetscErrorCode EqmNewtonSetBarrier(EqmMethod newton, PetscReal weight);
 /* At most so many quasi-Newton steps on each factor. */
 PETSC_INTERN PetscErrorCode EqmLmSetInnerSteps(EqmMethod lm, PetscInt steps);
 /* The residual from the next set-up on; NULL: the one that suits the problem. Not collective. */

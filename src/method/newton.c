@@ -1,5 +1,10 @@
 /* Newton's method on an objective with second derivatives and its terms, damped after Levenberg and Marquardt in the
-   objective's metric. */
+   objective's metric.
+
+   On the sphere flat triangles can tip over, which lowers the energy and leads to folds. From a map without folds the
+   upright term is added there as the barrier of an interior-point method: its weight falls by a factor whenever a step
+   gains little (Nocedal and Wright, Numerical Optimization, 2006, chapter 19). Begun with a large weight, the way leads
+   through short upright triangles, and past the local minima in which long ones are jammed. */
 #include "method/method.h"
 #include "domain/domain_private.h"
 #include "energy/curvature.h"
@@ -7,8 +12,13 @@
 enum { MOST_DAMPINGS = 40 };
 /* The damping's metric has constants and rotations in its null space: a little of its diagonal keeps it definite. */
 static const PetscReal diagonal_share = 1e-8;
+/* The barrier's weight falls by this factor once a step lowers the objective by less than that part; it has done so
+   when its share of the energy is negligible. */
+static const PetscReal weight_factor = .3, least_gain = 1e-3, negligible = 1e-6;
 
 typedef struct {
+  PetscReal first_barrier; /* on the sphere: the weight to begin with, per target's measure; 0: none */
+  EqmTerm barrier;         /* NULL: none */
   EqmLinear linear;
   PetscReal mu;
   PetscReal *weights, *mass; /* of the metric's Laplacian; the mass is left out */
@@ -16,6 +26,72 @@ typedef struct {
   EqmPlace trial;
   Vec gradient, trial_gradient, step;
 } Newton;
+
+/* ---- barrier */
+
+static PetscErrorCode CreateBarrier(EqmMethod method, EqmIterate iterate)
+{
+  Newton *const newton = method->data;
+  const EqmDomain domain = method->problem->domain;
+
+  PetscFunctionBegin;
+  if (domain->measure != EQM_MEASURE_AREA3 || newton->first_barrier == 0. || iterate->totals.folds > 0)
+    PetscFunctionReturn(0);
+  PetscCall(EqmTermCreateUpright(method->problem, newton->first_barrier * domain->target_measure, &newton->barrier));
+  PetscCall(EqmProblemAddTerm(method->problem, newton->barrier));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DestroyBarrier(EqmMethod method)
+{
+  Newton *const newton = method->data;
+
+  PetscFunctionBegin;
+  if (!newton->barrier) PetscFunctionReturn(0);
+  PetscCall(EqmProblemRemoveTerm(method->problem, newton->barrier));
+  PetscCall(newton->barrier->destroy(newton->barrier));
+  newton->barrier = NULL;
+  PetscFunctionReturn(0);
+}
+
+/* Objective and gradient at the present map. */
+static PetscErrorCode Evaluate(EqmMethod method, EqmIterate iterate)
+{
+  Newton *const newton = method->data;
+
+  PetscFunctionBegin;
+  PetscCall(EqmProblemEvaluate(method->problem, iterate, &iterate->place, iterate->image, &iterate->objective,
+                               newton->gradient));
+  PetscCall(VecNorm(newton->gradient, NORM_2, &iterate->gradient_norm));
+  PetscFunctionReturn(0);
+}
+
+/* Is the barrier more than a rounding of the energy? Collective. */
+static PetscErrorCode BarrierCounts(EqmMethod method, EqmIterate iterate, PetscBool *counts)
+{
+  Newton *const newton = method->data;
+  PetscReal part = 0.;
+
+  PetscFunctionBegin;
+  *counts = PETSC_FALSE;
+  if (!newton->barrier) PetscFunctionReturn(0);
+  PetscCall(newton->barrier->add(newton->barrier, method->problem, &iterate->place, iterate->image, &part, NULL));
+  *counts = (PetscBool)(part > PetscMax(negligible * iterate->totals.energy,
+                                        PETSC_MACHINE_EPSILON * method->problem->domain->target_measure));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LowerBarrier(EqmMethod method, EqmIterate iterate)
+{
+  Newton *const newton = method->data;
+
+  PetscFunctionBegin;
+  newton->barrier->weight *= weight_factor;
+  PetscCall(Evaluate(method, iterate));
+  PetscFunctionReturn(0);
+}
+
+/* ---- steps */
 
 static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
 {
@@ -33,9 +109,8 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
   PetscCall(EqmDomainCreateVec(domain, &newton->gradient));
   PetscCall(VecDuplicate(newton->gradient, &newton->trial_gradient));
   PetscCall(VecDuplicate(newton->gradient, &newton->step));
-  PetscCall(EqmProblemEvaluate(method->problem, iterate, &iterate->place, iterate->image, &iterate->objective,
-                               newton->gradient));
-  PetscCall(VecNorm(newton->gradient, NORM_2, &iterate->gradient_norm));
+  PetscCall(CreateBarrier(method, iterate));
+  PetscCall(Evaluate(method, iterate));
   PetscFunctionReturn(0);
 }
 
@@ -44,6 +119,7 @@ static PetscErrorCode Reset(EqmMethod method)
   Newton *const newton = method->data;
 
   PetscFunctionBegin;
+  PetscCall(DestroyBarrier(method));
   PetscCall(EqmLinearDestroy(&newton->linear));
   PetscCall(PetscFree4(newton->weights, newton->mass, newton->image, newton->velocity));
   PetscCall(EqmPlaceDestroy(&newton->trial));
@@ -108,15 +184,13 @@ static PetscErrorCode AcceptTrial(EqmMethod method, EqmIterate iterate, PetscRea
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
+/* Steps with ever more damping until one decreases the objective. */
+static PetscErrorCode TryDampings(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
 {
   Newton *const newton = method->data;
   PetscReal promised, energy;
-  PetscBool with_mass;
 
   PetscFunctionBegin;
-  PetscCall(
-      method->problem->objective->metric(method->problem, &iterate->place, newton->weights, newton->mass, &with_mass));
   *outcome = EQM_STEP_STALLED;
   for (PetscInt damping = 0; damping < MOST_DAMPINGS; damping++, newton->mu = PetscMax(4. * newton->mu, 1e-10)) {
     PetscBool success;
@@ -139,12 +213,62 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   PetscFunctionReturn(0);
 }
 
+/* A step of the iteration is one that moves the map, with as low a barrier as that takes. */
+static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcome)
+{
+  Newton *const newton = method->data;
+  PetscReal before;
+  PetscBool with_mass, lower;
+
+  PetscFunctionBegin;
+  PetscCall(
+      method->problem->objective->metric(method->problem, &iterate->place, newton->weights, newton->mass, &with_mass));
+  do {
+    const PetscReal mu = newton->mu;
+    before = iterate->objective;
+    PetscCall(TryDampings(method, iterate, outcome));
+    lower = (PetscBool)(*outcome != EQM_STEP_TAKEN || before - iterate->objective < least_gain * before);
+    if (lower) PetscCall(BarrierCounts(method, iterate, &lower));
+    if (lower) PetscCall(LowerBarrier(method, iterate));
+    if (lower && *outcome == EQM_STEP_STALLED) newton->mu = mu;
+  } while (lower && *outcome != EQM_STEP_TAKEN);
+  PetscFunctionReturn(0);
+}
+
+/* A barrier of no weight is none. */
 static PetscErrorCode State(EqmMethod method, EqmIterate iterate, EqmState state)
+{
+  Newton *const newton = method->data;
+  PetscReal weight = newton->barrier ? newton->barrier->weight : 0.;
+
+  PetscFunctionBegin;
+  PetscCall(EqmStateReal(state, "mu", &newton->mu));
+  PetscCall(EqmStateReal(state, "barrier_weight", &weight));
+  if (!EqmStateIsLoading(state)) PetscFunctionReturn(0);
+  if (weight == 0.) PetscCall(DestroyBarrier(method));
+  if (newton->barrier) newton->barrier->weight = weight;
+  PetscCall(Evaluate(method, iterate));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetFromOptions(EqmMethod method, PetscOptionItems *PetscOptionsObject)
 {
   Newton *const newton = method->data;
 
   PetscFunctionBegin;
-  PetscCall(EqmStateReal(state, "mu", &newton->mu));
+  PetscCall(PetscOptionsReal("-newton_barrier",
+                             "newton, sphere: first weight of what keeps triangles upright, which falls in the course "
+                             "of the run; 30 shortens long triangles first",
+                             "EqmSolverSetFromOptions", newton->first_barrier, &newton->first_barrier, NULL));
+  if (!(newton->first_barrier >= 0.))
+    EqmFail(method->comm, EQM_ERR_USAGE, "-newton_barrier %.6g: give 0 or more", (double)newton->first_barrier);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmNewtonSetBarrier(EqmMethod method, PetscReal weight)
+{
+  PetscFunctionBegin;
+  ((Newton *)method->data)->first_barrier = weight;
   PetscFunctionReturn(0);
 }
 
@@ -154,10 +278,12 @@ PetscErrorCode EqmMethodCreateNewton(EqmMethod method)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&newton));
+  newton->first_barrier = .01;
   method->data = newton;
   method->purpose =
       "damped Newton steps with the exact Hessian: a coupled factorisation each, for up to 100,000 vertices";
   method->takes_terms = method->needs_hessian = PETSC_TRUE;
-  method->ops = (EqmMethodOps){.set_up = SetUp, .step = Step, .state = State, .reset = Reset};
+  method->ops =
+      (EqmMethodOps){.set_from_options = SetFromOptions, .set_up = SetUp, .step = Step, .state = State, .reset = Reset};
   PetscFunctionReturn(0);
 }

@@ -1,13 +1,12 @@
 /* What a run does before it tells the user that its map is not good. lm minimises logarithms of ratios, which bring
    collapsed cells back and are lenient with those that are too large; where ratios are off at the end by more than one
    in a hundred it goes on with the mixed residual, which is close to E on that side. Where that leaves folds, or a
-   map that is far off, other starts are tried. Each attempt has, if the run has checkpoints, one of its own: FILE.2,
-   FILE.3, ... The best map is the run's. */
+   map that is far off, other starts are tried, and on the sphere Newton steps with a barrier. Each attempt has, if the
+   run has checkpoints, one of its own: FILE.2, FILE.3, ... The best map is the run's. */
+#include "solver/attempt.h"
 #include "solver/judge.h"
 #include "mesh/mesh_private.h"
 #include "base/quiet.h"
-#include "problem/term.h"
-#include "solver/inner.h"
 #include <string.h>
 
 /* Above this energy, per measure of the image, the mixed residual does better: ratios off by one in a hundred. */
@@ -15,50 +14,9 @@ static const PetscReal fair_energy = 1e-4;
 
 enum { MOST_STARTS = 8 };
 
-/* What one attempt has found. */
-typedef struct {
-  EqmIterate iterate;
-  EqmHistoryRow *history;
-  PetscReal *objectives;
-  PetscInt num_history, max_history;
-  EqmStatus status;
-  char message[EQM_MESSAGE_MAX];
-  const EqmStartType *start;
-} Attempt;
-
-#define SWAP(type, a, b)                                                                                               \
-  do {                                                                                                                 \
-    type kept = (a);                                                                                                   \
-    (a) = (b);                                                                                                         \
-    (b) = kept;                                                                                                        \
-  } while (0)
-
-static PetscErrorCode Exchange(EqmSolver solver, Attempt *attempt)
+static PetscReal EnergyPerArea(EqmSolver solver)
 {
-  char message[EQM_MESSAGE_MAX];
-
-  PetscFunctionBegin;
-  SWAP(EqmIterate, solver->iterate, attempt->iterate);
-  SWAP(EqmHistoryRow *, solver->history, attempt->history);
-  SWAP(PetscReal *, solver->objectives, attempt->objectives);
-  SWAP(PetscInt, solver->num_history, attempt->num_history);
-  SWAP(PetscInt, solver->max_history, attempt->max_history);
-  SWAP(EqmStatus, solver->status, attempt->status);
-  SWAP(const EqmStartType *, solver->start, attempt->start);
-  PetscCall(PetscStrncpy(message, solver->message, sizeof(message)));
-  PetscCall(PetscStrncpy(solver->message, attempt->message, sizeof(solver->message)));
-  PetscCall(PetscStrncpy(attempt->message, message, sizeof(attempt->message)));
-  solver->rows_shown = 0;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Destroy(Attempt *attempt)
-{
-  PetscFunctionBegin;
-  PetscCall(EqmIterateDestroy(&attempt->iterate));
-  PetscCall(PetscFree(attempt->history));
-  PetscCall(PetscFree(attempt->objectives));
-  PetscFunctionReturn(0);
+  return solver->iterate->totals.energy / solver->iterate->totals.total;
 }
 
 /* Is the map without folds, but further from equal ratios than `level`? What a user has limited is left as it is, and
@@ -79,72 +37,16 @@ static PetscBool IsDisappointing(EqmSolver solver, PetscReal far_energy)
   return (PetscBool)(solver->iterate->totals.folds > 0 || IsOff(solver, far_energy));
 }
 
-/* E and the terms; without them E per area of the image, which is how far ratios are off: a map of few boundary
-   vertices has less E where its image is small. */
-static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, PetscReal *value)
-{
-  PetscReal *image;
-
-  PetscFunctionBegin;
-  *value = problem->terms ? iterate->totals.energy : iterate->totals.energy / iterate->totals.total;
-  if (!problem->terms) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(problem->mesh->num_local_cells, &image));
-  PetscCall(EqmProblemEvaluate(problem, iterate, &iterate->place, image, value, NULL));
-  PetscCall(PetscFree(image));
-  PetscFunctionReturn(0);
-}
-
-/* Fewer folds, or as many and a lower value. */
-static PetscErrorCode IsBetter(EqmProblem problem, EqmIterate a, EqmIterate b, PetscBool *better)
-{
-  PetscReal of_a, of_b;
-
-  PetscFunctionBegin;
-  PetscCall(Evaluate(problem, a, &of_a));
-  PetscCall(Evaluate(problem, b, &of_b));
-  *better = (PetscBool)(a->totals.folds == b->totals.folds ? of_a < of_b : a->totals.folds < b->totals.folds);
-  PetscFunctionReturn(0);
-}
-
-/* The attempt's end, or, unless the run has been stopped, what was before if that is the better one. */
-static PetscErrorCode TakeBetter(EqmSolver solver, PetscBool ended, Attempt *before)
-{
-  PetscBool better = ended;
-
-  PetscFunctionBegin;
-  if (ended && solver->status == EQM_STATUS_STOPPED) PetscFunctionReturn(0);
-  if (ended) PetscCall(IsBetter(solver->problem, solver->iterate, before->iterate, &better));
-  if (!better) PetscCall(Exchange(solver, before));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Tell(EqmSolver solver, const char *next)
+static PetscErrorCode Tell(EqmSolver solver, const char *next, const char *how)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
 
   PetscFunctionBegin;
   PetscCall(EqmProblemNotify(solver->problem,
                              "from -start %s to energy %.3g and %" PetscInt64_FMT " folds in %" PetscInt_FMT
-                             " iterations: once more from -start %s\n",
-                             solver->start->name, (double)totals->energy, totals->folds, solver->iterate->number,
-                             next));
-  PetscFunctionReturn(0);
-}
-
-/* The names of checkpoints, for the k-th attempt. `first` is what they were for the first. */
-static PetscErrorCode SetStage(EqmSolver solver, const EqmSolverSettings *first, size_t suffix, PetscInt k)
-{
-  EqmSolverSettings *const set = &solver->settings;
-  EqmCheckpoints *const known = &solver->checkpoints;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrncpy(set->checkpoint, first->checkpoint, sizeof(set->checkpoint)));
-  PetscCall(PetscStrncpy(set->restart, first->restart, sizeof(set->restart)));
-  known->suffix = suffix;
-  known->written = -1;
-  known->resumed = 0;
-  known->finished = PETSC_FALSE;
-  if (k > 1) PetscCall(EqmSolverSetStage(solver, k));
+                             " iterations: once more from -start %s%s\n",
+                             solver->start->name, (double)totals->energy, totals->folds, solver->iterate->number, next,
+                             how));
   PetscFunctionReturn(0);
 }
 
@@ -174,71 +76,47 @@ static PetscErrorCode Begin(EqmSolver solver, PetscInt count, PetscReal *tried, 
   PetscFunctionReturn(0);
 }
 
-/* ---- the mixed residual */
+/* ---- from the same map */
 
-/* The map so far, its history and what the checkpoint of this attempt has in their place. */
-static PetscErrorCode TakeOver(EqmSolver solver, const Attempt *from)
+/* Go on with the mixed residual, if that is for it. */
+static PetscErrorCode GoOnMixed(EqmSolver solver, EqmAttempts *attempts)
 {
-  EqmIterate const iterate = solver->iterate;
-
-  PetscFunctionBegin;
-  solver->limited = PETSC_FALSE;
-  if (solver->settings.restart[0]) {
-    PetscCall(EqmCheckpointLoadMap(solver));
-  } else {
-    PetscCall(EqmPlaceCopy(solver->problem->domain, &from->iterate->place, &iterate->place));
-    iterate->number = from->iterate->number + 1;
-    PetscCall(EqmHistoryReserve(solver, from->num_history));
-    PetscCall(PetscArraycpy(solver->history, from->history, from->num_history));
-    PetscCall(PetscArraycpy(solver->objectives, from->objectives, from->num_history));
-    solver->begun_again = solver->num_history = from->num_history;
-  }
-  PetscCall(EqmIterateUpdate(solver->problem, iterate));
-  PetscFunctionReturn(0);
-}
-
-/* Go on from the present map, as the next attempt, if that is for it. */
-static PetscErrorCode GoOn(EqmSolver solver, const EqmSolverSettings *first, size_t suffix, PetscInt *attempt)
-{
-  Attempt before = {.status = EQM_STATUS_NOT_CONVERGED, .start = solver->start};
   PetscBool can = PETSC_FALSE;
+  EqmAttempt before;
 
   PetscFunctionBegin;
   if (!strcmp(solver->defaults.method, "lm")) PetscCall(EqmLmIsByLogarithms(solver->method, &can));
   if (!can || !IsOff(solver, fair_energy) || solver->iterate->number >= solver->settings.max_it) PetscFunctionReturn(0);
-  PetscCall(SetStage(solver, first, suffix, ++*attempt));
   PetscCall(EqmProblemNotify(solver->problem, "energy %.3g: on with the mixed residual\n",
                              (double)solver->iterate->totals.energy));
-  PetscCall(EqmIterateCreate(solver->problem, &before.iterate));
-  PetscCall(Exchange(solver, &before));
-  PetscCall(TakeOver(solver, &before));
+  PetscCall(EqmAttemptContinue(solver, attempts, &before));
   PetscCall(EqmLmSetResidual(solver->method, &EqmResidualMixed));
   PetscCall(EqmSolverRun(solver));
   PetscCall(EqmLmSetResidual(solver->method, NULL));
-  PetscCall(TakeBetter(solver, PETSC_TRUE, &before));
-  PetscCall(Destroy(&before));
+  PetscCall(EqmAttemptTakeBetter(solver, PETSC_TRUE, &before));
+  PetscCall(EqmAttemptDestroy(&before));
   PetscFunctionReturn(0);
 }
 
 /* ---- other starts */
 
 /* From another start, as the next attempt. `count`: starts tried. */
-static PetscErrorCode TryStart(EqmSolver solver, const EqmStartType *start, const EqmSolverSettings *first,
-                               size_t suffix, PetscInt *attempt, PetscInt count, PetscReal *tried)
+static PetscErrorCode TryStart(EqmSolver solver, const EqmStartType *start, EqmAttempts *attempts, PetscInt count,
+                               PetscReal *tried)
 {
-  Attempt other = {.status = EQM_STATUS_NOT_CONVERGED, .start = start};
+  EqmAttempt other = {.status = EQM_STATUS_NOT_CONVERGED, .start = start};
   PetscBool begun;
 
   PetscFunctionBegin;
-  PetscCall(SetStage(solver, first, suffix, ++*attempt));
-  PetscCall(Tell(solver, start->name));
+  PetscCall(EqmAttemptsNext(solver, attempts));
+  PetscCall(Tell(solver, start->name, strcmp(solver->defaults.method, "newton") ? "" : " by Newton steps"));
   PetscCall(EqmIterateCreate(solver->problem, &other.iterate));
-  PetscCall(Exchange(solver, &other));
+  PetscCall(EqmAttemptExchange(solver, &other));
   PetscCall(Begin(solver, count, tried, &begun));
   if (begun) PetscCall(EqmSolverRun(solver));
-  if (begun) PetscCall(GoOn(solver, first, suffix, attempt));
-  PetscCall(TakeBetter(solver, begun, &other));
-  PetscCall(Destroy(&other));
+  if (begun) PetscCall(GoOnMixed(solver, attempts));
+  PetscCall(EqmAttemptTakeBetter(solver, begun, &other));
+  PetscCall(EqmAttemptDestroy(&other));
   PetscFunctionReturn(0);
 }
 
@@ -257,7 +135,7 @@ PetscBool EqmSolverIsBlocked(EqmSolver solver)
                      !strcmp(solver->defaults.method, "lm"));
 }
 
-static PetscErrorCode TryStarts(EqmSolver solver, const EqmSolverSettings *first, size_t suffix, PetscInt *attempt)
+static PetscErrorCode TryStarts(EqmSolver solver, EqmAttempts *attempts)
 {
   const EqmFormulation *const formulation = solver->formulation;
   PetscInt count = 1;
@@ -270,22 +148,112 @@ static PetscErrorCode TryStarts(EqmSolver solver, const EqmSolverSettings *first
 
     if (!IsDisappointing(solver, other->far_energy)) continue;
     PetscCall(EqmStartFind(solver->comm, formulation->starts, formulation->domain, other->name, &start));
-    PetscCall(TryStart(solver, start, first, suffix, attempt, count++, tried));
+    PetscCall(TryStart(solver, start, attempts, count++, tried));
   }
   if (count > 1 && solver->status == EQM_STATUS_NOT_CONVERGED && !solver->limited)
     PetscCall(PetscStrlcat(solver->message, "; other starts did no better", sizeof(solver->message)));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSolverTryAgain(EqmSolver solver)
+/* ---- Newton steps with a barrier */
+
+/* Newton steps need the time of a factorisation each, hundreds of times. */
+static PetscBool CanGoOnByNewton(EqmSolver solver)
 {
-  const EqmSolverSettings first = solver->settings;
-  const size_t suffix = solver->checkpoints.suffix;
-  PetscInt attempt = 1;
+  const PetscInt64 most_vertices = 30000;
+  const PetscBool inner = solver->checkpoints.ignores_requests; /* the start of a solid need not be so good */
+
+  if (strcmp(solver->defaults.method, "lm") || !solver->problem->domain->curved_image || inner) return PETSC_FALSE;
+  return (PetscBool)(solver->mesh->num_vertices <= most_vertices &&
+                     solver->settings.max_it == solver->defaults.max_it); /* a limit of the user's is for lm */
+}
+
+/* What newton takes the place of. */
+typedef struct {
+  EqmMethod method;
+  EqmMethodDefaults defaults;
+} Host;
+
+static PetscErrorCode TakeNewton(EqmSolver solver, PetscReal barrier, Host *lm)
+{
+  enum { MOST_STEPS = 2000 };
+  const PetscReal energy_rtol = 1e-3;
 
   PetscFunctionBegin;
-  PetscCall(GoOn(solver, &first, suffix, &attempt));
-  if (HasOtherStarts(solver)) PetscCall(TryStarts(solver, &first, suffix, &attempt));
-  if (attempt > 1) PetscCall(SetStage(solver, &first, suffix, 1));
+  *lm = (Host){solver->method, solver->defaults};
+  PetscCall(EqmFormulationFindMethod(solver->comm, solver->formulation, "newton", &solver->defaults));
+  PetscCall(EqmSolverCreateMethod(solver, &solver->defaults, NULL, &solver->method));
+  PetscCall(EqmNewtonSetBarrier(solver->method, barrier));
+  solver->settings.max_it = solver->iterate->number + MOST_STEPS;
+  solver->settings.energy_rtol = energy_rtol;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TakeBackLm(EqmSolver solver, const EqmSolverSettings *first, const Host *lm)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmMethodDestroy(&solver->method));
+  solver->method = lm->method;
+  solver->defaults = lm->defaults;
+  solver->settings.max_it = first->max_it;
+  solver->settings.energy_rtol = first->energy_rtol;
+  PetscFunctionReturn(0);
+}
+
+/* From the present map. */
+static PetscErrorCode GoOnByNewton(EqmSolver solver, PetscReal barrier, EqmAttempts *attempts)
+{
+  EqmAttempt before;
+  Host lm;
+
+  PetscFunctionBegin;
+  PetscCall(EqmProblemNotify(solver->problem, "energy %.3g: on with Newton steps and a barrier of weight %g\n",
+                             (double)solver->iterate->totals.energy, (double)barrier));
+  PetscCall(TakeNewton(solver, barrier, &lm));
+  PetscCall(EqmAttemptContinue(solver, attempts, &before));
+  PetscCall(EqmSolverRun(solver));
+  PetscCall(TakeBackLm(solver, &attempts->first, &lm));
+  PetscCall(EqmAttemptTakeBetter(solver, PETSC_TRUE, &before));
+  PetscCall(EqmAttemptDestroy(&before));
+  PetscFunctionReturn(0);
+}
+
+/* With a large weight, so that triangles first become short, from the best map; of meshes on which that is a matter of
+   seconds, from the first map for limbs as well, whose triangles lm has not jammed yet. With a small weight where that
+   leads to no better map. */
+static PetscErrorCode TryNewton(EqmSolver solver, PetscBool other_starts, EqmAttempts *attempts)
+{
+  const PetscBool is_small = (PetscBool)(solver->mesh->num_vertices <= 10000);
+  const PetscReal short_first = 30., as_is = .01;
+  const PetscReal far_energy = is_small ? fair_energy : 1e-3;
+  const PetscReal before = EnergyPerArea(solver);
+  const EqmStartType *const limbs = &EqmStartSphereSolidAngle;
+  PetscReal tried;
+  Host lm;
+
+  PetscFunctionBegin;
+  if (!CanGoOnByNewton(solver)) PetscFunctionReturn(0);
+  if (IsOff(solver, far_energy)) PetscCall(GoOnByNewton(solver, short_first, attempts));
+  if (other_starts && is_small && IsOff(solver, far_energy)) {
+    PetscCall(TakeNewton(solver, short_first, &lm));
+    PetscCall(TryStart(solver, limbs, attempts, 0, &tried));
+    PetscCall(TakeBackLm(solver, &attempts->first, &lm));
+  }
+  if (IsOff(solver, fair_energy) && !(EnergyPerArea(solver) < before)) PetscCall(GoOnByNewton(solver, as_is, attempts));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolverTryAgain(EqmSolver solver)
+{
+  EqmAttempts attempts = {.first = solver->settings, .suffix = solver->checkpoints.suffix, .count = 1};
+
+  PetscBool other_starts;
+
+  PetscFunctionBegin;
+  PetscCall(GoOnMixed(solver, &attempts));
+  other_starts = HasOtherStarts(solver);
+  if (other_starts) PetscCall(TryStarts(solver, &attempts));
+  PetscCall(TryNewton(solver, other_starts, &attempts));
+  PetscCall(EqmAttemptsEnd(solver, &attempts));
   PetscFunctionReturn(0);
 }

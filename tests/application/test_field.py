@@ -112,6 +112,16 @@ def check_sphere(program):
     assert balanced <= 1e-2 and "once more from -start" in text, (balanced, text)
 
 
+def check_barrier(program):
+    """Where all starts end far from equal areas Newton steps with a barrier go on, and never to a worse map."""
+    program.succeed("generate", "starfish", "-n", 100, "-o", "star.obj")
+    default, text = energy(program, "sphere", "star.obj")
+    before = [float(line.split()[1].rstrip(":")) for line in text.splitlines() if "on with Newton steps and a barrier" in line]
+    assert before and default < .8 * before[0], (default, before)
+    refused = program.run("sphere", "star.obj", "-method", "newton", "-newton_barrier", -1)
+    assert refused.returncode == 2 and "give 0 or more" in refused.stderr, (refused.returncode, refused.stderr)
+
+
 def check_coarse(program):
     """Neighbours on the boundary run together: said, and no abort."""
     points = [(0.703, -0.978, -0.594),
@@ -166,6 +176,7 @@ def main():
         check_square(program)
         check_repair(program)
         check_sphere(program)
+        check_barrier(program)
         check_coarse(program)
         check_spiral(program)
         check_files(program)

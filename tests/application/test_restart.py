@@ -368,6 +368,20 @@ def check_register(program):
     assert difference <= 1e-12, difference
 
 
+def check_attempts(program):
+    """A run of several attempts, stopped in the last, a minimisation by another method, goes on there, bit for bit."""
+    program.succeed("generate", "starfish", "-n", 100, "-o", "star.obj")
+    run = ("sphere", "star.obj", "-checkpoint", "star.ck", "-checkpoint_every", 7)
+    program.succeed(*run, *outputs("whole"))
+    last = max(int(name.split(".")[2]) for name in os.listdir(program.folder) if name.startswith("star.ck.") and name[8:].isdigit())
+    with h5py.File(program.file(f"star.ck.{last}.previous")) as state:
+        assert last > 2 and state.attrs["method"] == b"newton", (last, state.attrs["method"])
+    os.replace(program.file(f"star.ck.{last}.previous"), program.file(f"star.ck.{last}"))
+    program.succeed(*run, "-restart", "star.ck", *outputs("run"))
+    check_same(program, "run", "whole")
+    remove(program, "star.ck", *(f"star.ck.{k}" for k in range(2, last + 1)))
+
+
 def check_full_disk(program):
     """The checkpoint does not fit: told once, the run goes on, what was there before is still good."""
     disk = program.file("disk")
@@ -413,7 +427,7 @@ def main():
             alone.get(sys.argv[3], lambda program: check_many_kills(program, int(sys.argv[3])))(program)
             return 0
         check_kills(program, program.ranks, 4, random.Random(program.ranks))
-        checks = [check_methods, check_other_ranks, check_kept_mesh, check_stopping, check_register]
+        checks = [check_methods, check_other_ranks, check_kept_mesh, check_stopping, check_register, check_attempts]
         if program.ranks != 2:  # one rank alone reads and writes here
             checks += [check_damage, check_foreign, check_finished, check_full_disk]
         for check in checks:
