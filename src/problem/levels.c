@@ -41,7 +41,7 @@ static PetscErrorCode MakeOptions(EqmProblem problem, EqmHierarchyOptions *optio
   PetscFunctionReturn(0);
 }
 
-/* `all_on_first`: however large the mesh is, all levels are on the first rank. Collective. */
+/* `all_on_first`, for a linear solver: however large the mesh is, all levels are on the first rank. Collective. */
 static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLevels **levels)
 {
   EqmHierarchyOptions options;
@@ -61,8 +61,13 @@ static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLeve
 
 PetscErrorCode EqmProblemGetLevels(EqmProblem problem, EqmLevels **levels)
 {
+  EqmSolverKind kind;
+
   PetscFunctionBegin;
-  if (!problem->levels) PetscCall(Create(problem, PETSC_FALSE, &problem->levels));
+  PetscCall(EqmLinearWantedKind(&kind));
+  if (!problem->levels)
+    PetscCall(Create(problem, (PetscBool)(kind == EQM_SOLVER_HIERARCHY && EqmLevelsObstacleToLinear(problem) == NULL),
+                     &problem->levels));
   *levels = problem->levels;
   PetscFunctionReturn(0);
 }
@@ -82,14 +87,13 @@ PetscErrorCode EqmProblemDropLevels(EqmProblem problem)
 PetscErrorCode EqmProblemCreateLinearOnLevels(EqmProblem problem, EqmLinear *linear)
 {
   const EqmUnknowns unknowns = EqmDomainUnknowns(problem->domain);
+  EqmLevels *levels;
 
   PetscFunctionBegin;
   PetscCall(EqmLinearDestroy(&problem->scalar));
   PetscCall(PetscFree(problem->scalar_count));
-  if (problem->levels && problem->levels->shared) PetscCall(EqmProblemDropLevels(problem));
-  if (!problem->levels) PetscCall(Create(problem, PETSC_TRUE, &problem->levels));
-  PetscCall(
-      EqmLinearCreateOnLevels(problem->mesh, &unknowns, problem->levels->hierarchy, problem->levels->target, linear));
+  PetscCall(EqmProblemGetLevels(problem, &levels));
+  PetscCall(EqmLinearCreateOnLevels(problem->mesh, &unknowns, levels->hierarchy, levels->target, linear));
   PetscCall(EqmLinearDescribe(*linear, problem->linear_solver, sizeof(problem->linear_solver)));
   PetscFunctionReturn(0);
 }
