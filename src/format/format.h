@@ -88,9 +88,8 @@ PETSC_INTERN void EqmFormatDescribeDropped(const char *file, PetscBool is_map, P
 /* The field "polygon" or "group" on cells among the fields of a writer, or NULL. Not collective. */
 PETSC_INTERN const EqmField *EqmFieldPolygon(const EqmField *fields, PetscInt num_fields);
 PETSC_INTERN const EqmField *EqmFieldGroup(const EqmField *fields, PetscInt num_fields);
-/* The number of a cell's group as an int; 0 where there is none or it is no such number. Not collective. */
+/* The number of a group as an int; 0 where it is no such number. Not collective. */
 PETSC_INTERN int EqmGroupOf(PetscReal number);
-PETSC_INTERN int EqmGroupOfCell(const EqmField *group, PetscInt cell);
 /* Refuse what a format cannot hold: more than 2^31 rows; tetrahedra. EQM_ERR_USAGE (quiet). Not collective. */
 PETSC_INTERN PetscErrorCode EqmRequireSmall(const EqmSerialMesh *mesh, const char *format, char *error, size_t length);
 PETSC_INTERN PetscErrorCode EqmRequireTriangles(const EqmSerialMesh *mesh, const char *format, char *error,

@@ -65,7 +65,7 @@ PetscErrorCode EqmWriteGmsh(EqmAtomicFile *file, EqmMeshStream *stream, char *er
   }
   EqmAtomicPrint(file, "$EndNodes\n$Elements\n%lld\n", (long long)mesh->num_cells);
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    const int group = groups ? EqmGroupOf(*EqmStreamField(stream, EqmStreamIndexOf(stream, groups), i)) : 0;
+    const int group = EqmStreamGroup(stream, EqmStreamIndexOf(stream, groups), i);
     const PetscInt *const cell = EqmStreamCell(stream, i);
 
     EqmAtomicPrint(file, "%lld %d 2 %d %d", (long long)i + 1, size == 3 ? 2 : 4, group, group ? group : 1);

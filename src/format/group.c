@@ -26,8 +26,3 @@ int EqmGroupOf(PetscReal number)
 {
   return number > -2147483648.0 && number < 2147483648.0 ? (int)number : 0;
 }
-
-int EqmGroupOfCell(const EqmField *group, PetscInt cell)
-{
-  return group ? EqmGroupOf(group->values[cell]) : 0;
-}

@@ -12,6 +12,7 @@ void EqmInputOpen(EqmInput *in, const char *bytes, size_t length, char *error, s
   in->start = in->cursor = bytes ? bytes : "";
   in->end = in->start + (bytes ? length : 0);
   in->beside = in->beside_end = NULL;
+  in->behind = 0;
   in->binary = PETSC_FALSE;
   in->error = error;
   in->error_length = error_length;
@@ -171,7 +172,7 @@ PetscErrorCode EqmReadCount(EqmInput *in, const char *what, size_t bytes_each, P
   if (!EqmReadInteger(in, count) || *count < 0) {
     return EqmReject(in, EQM_ERR_IO, "the number of %s is missing or is not a whole number", what);
   }
-  if ((size_t)*count > EqmRemaining(in) / bytes_each + 1) {
+  if ((size_t)*count > (EqmRemaining(in) + in->behind) / bytes_each + 1) {
     return EqmRejectAt(in, before, EQM_ERR_IO,
                        "%lld %s are announced, but the file is too short for them: it is truncated", (long long)*count,
                        what);

@@ -11,6 +11,7 @@
 typedef struct {
   const char *start, *cursor, *end;
   const char *beside, *beside_end; /* contents of other files that the file names, or NULL */
+  size_t behind;                   /* bytes of the file behind `end`, where this is its beginning */
   PetscBool binary;                /* positions in messages are bytes, not lines */
   char *error;                     /* where EqmReject writes */
   size_t error_length;

@@ -2,6 +2,7 @@
    from 1. Sections that are no vertices, triangles or tetrahedra are passed over. */
 #include "format.h"
 #include "medit.h"
+#include "stream.h"
 
 #include <ctype.h>
 
@@ -174,24 +175,24 @@ static PetscErrorCode ParseMedit(const char *bytes, size_t length, EqmSerialMesh
   return EqmBuilderFinish(&medit.builder, ParseSections(&medit), mesh);
 }
 
-/* Write a .mesh file; reference numbers are those of the groups, 0 elsewhere. See EqmWriter. */
-static PetscErrorCode WriteMedit(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
-                                 PetscInt num_fields, char *error, size_t error_length)
+/* Write a .mesh file; reference numbers are those of the groups, 0 elsewhere. See EqmStreamWriter. */
+static PetscErrorCode WriteMedit(EqmAtomicFile *file, EqmMeshStream *stream, char *error, size_t error_length)
 {
-  const EqmField *const group = EqmFieldGroup(fields, num_fields);
+  const EqmSerialMesh *const mesh = &stream->mesh;
+  const PetscInt group = EqmStreamIndexOf(stream, EqmFieldGroup(stream->fields, stream->num_fields));
   const PetscInt size = mesh->cell_size;
 
   EqmAtomicPrint(file, "MeshVersionFormatted 2\nDimension 3\n\nVertices\n%lld\n", (long long)mesh->num_vertices);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
-    EqmAtomicPrintReals(file, 3, mesh->vertices + 3 * (size_t)i, ' ');
+    EqmAtomicPrintReals(file, 3, EqmStreamVertex(stream, i), ' ');
     EqmAtomicWrite(file, " 0\n", 3);
   }
   EqmAtomicPrint(file, "\n%s\n%lld\n", size == 3 ? "Triangles" : "Tetrahedra", (long long)mesh->num_cells);
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    const PetscInt *const cell = mesh->cells + (size_t)size * (size_t)i;
+    const PetscInt *const cell = EqmStreamCell(stream, i);
 
     for (PetscInt k = 0; k < size; ++k) EqmAtomicPrint(file, "%lld ", (long long)cell[k] + 1);
-    EqmAtomicPrint(file, "%d\n", EqmGroupOfCell(group, i));
+    EqmAtomicPrint(file, "%d\n", EqmStreamGroup(stream, group, i));
   }
   EqmAtomicPrint(file, "\nEnd\n");
   return 0;
@@ -201,5 +202,5 @@ EQM_DEFINE_FORMAT(Medit) = {.name = "Medit mesh",
                             .suffixes = "mesh",
                             .recognise = RecogniseMedit,
                             .parse = ParseMedit,
-                            .write = WriteMedit,
+                            .write_stream = WriteMedit,
                             .groups = PETSC_TRUE};

@@ -2,6 +2,7 @@
    next block, a count and records. */
 #include "format.h"
 #include "medit.h"
+#include "stream.h"
 #include "scalar.h"
 
 enum { CODE_DIMENSION = 3, CODE_VERTICES = 4, CODE_END = 54 };
@@ -169,11 +170,11 @@ static void StartBlock(EqmAtomicFile *file, int32_t code, PetscInt count, size_t
 }
 
 /* Write a .meshb file of version 3 (doubles, 64-bit offsets); reference numbers are those of the groups, 0 elsewhere.
-   See EqmWriter. */
-static PetscErrorCode WriteMeshb(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
-                                 PetscInt num_fields, char *error, size_t error_length)
+   See EqmStreamWriter. */
+static PetscErrorCode WriteMeshb(EqmAtomicFile *file, EqmMeshStream *stream, char *error, size_t error_length)
 {
-  const EqmField *const group = EqmFieldGroup(fields, num_fields);
+  const EqmSerialMesh *const mesh = &stream->mesh;
+  const PetscInt group = EqmStreamIndexOf(stream, EqmFieldGroup(stream->fields, stream->num_fields));
   const PetscInt size = mesh->cell_size;
   const int32_t head[3] = {1, 3, CODE_DIMENSION}, dimension = 3, zero = 0, end = CODE_END;
   const int64_t nowhere = 0;
@@ -185,15 +186,16 @@ static PetscErrorCode WriteMeshb(EqmAtomicFile *file, const EqmSerialMesh *mesh,
   EqmAtomicWrite(file, &dimension, 4);
   StartBlock(file, CODE_VERTICES, mesh->num_vertices, 28, &offset);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
-    EqmAtomicWrite(file, mesh->vertices + 3 * (size_t)i, 24);
+    EqmAtomicWrite(file, EqmStreamVertex(stream, i), 24);
     EqmAtomicWrite(file, &zero, 4);
   }
   StartBlock(file, size == 3 ? 6 : 8, mesh->num_cells, 4 * ((size_t)size + 1), &offset);
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
+    const PetscInt *const cell = EqmStreamCell(stream, i);
     int32_t record[5] = {0, 0, 0, 0, 0};
 
-    for (PetscInt k = 0; k < size; ++k) record[k] = (int32_t)mesh->cells[(size_t)size * (size_t)i + (size_t)k] + 1;
-    record[size] = EqmGroupOfCell(group, i);
+    for (PetscInt k = 0; k < size; ++k) record[k] = (int32_t)cell[k] + 1;
+    record[size] = EqmStreamGroup(stream, group, i);
     EqmAtomicWrite(file, record, 4 * ((size_t)size + 1));
   }
   EqmAtomicWrite(file, &end, 4);
@@ -205,5 +207,5 @@ EQM_DEFINE_FORMAT(Meshb) = {.name = "Medit meshb",
                             .suffixes = "meshb",
                             .recognise = RecogniseMeshb,
                             .parse = ParseMeshb,
-                            .write = WriteMeshb,
+                            .write_stream = WriteMeshb,
                             .groups = PETSC_TRUE};

@@ -80,4 +80,10 @@ static inline PetscInt EqmStreamIndexOf(const EqmMeshStream *stream, const EqmFi
   return field ? (PetscInt)(field - stream->fields) : -1;
 }
 
+/* The group of a cell by the field of that number, 0 for -1. On rank 0. Not collective. */
+static inline int EqmStreamGroup(EqmMeshStream *stream, PetscInt field, PetscInt cell)
+{
+  return field < 0 ? 0 : EqmGroupOf(*EqmStreamField(stream, field, cell));
+}
+
 #endif

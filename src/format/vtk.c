@@ -219,6 +219,6 @@ EQM_DEFINE_FORMAT(Vtk) = {.name = "legacy VTK",
                           .suffixes = "vtk",
                           .recognise = RecogniseVtk,
                           .parse = ParseVtk,
-                          .write = EqmWriteVtk,
+                          .write_stream = EqmWriteVtk,
                           .vertex_fields = PETSC_TRUE,
                           .cell_fields = PETSC_TRUE};

@@ -9,8 +9,8 @@ PETSC_INTERN PetscErrorCode EqmWritePly(EqmAtomicFile *file, struct EqmMeshStrea
                                         size_t error_length);
 PETSC_INTERN PetscErrorCode EqmWriteVtu(EqmAtomicFile *file, struct EqmMeshStream *stream, char *error,
                                         size_t error_length);
-PETSC_INTERN PetscErrorCode EqmWriteVtk(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
-                                        PetscInt num_fields, char *error, size_t error_length);
+PETSC_INTERN PetscErrorCode EqmWriteVtk(EqmAtomicFile *file, struct EqmMeshStream *stream, char *error,
+                                        size_t error_length);
 PETSC_INTERN PetscErrorCode EqmWriteGifti(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                           PetscInt num_fields, char *error, size_t error_length);
 PETSC_INTERN PetscErrorCode EqmWriteGmsh(EqmAtomicFile *file, struct EqmMeshStream *stream, char *error,

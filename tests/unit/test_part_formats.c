@@ -79,7 +79,7 @@ static PetscErrorCode TestPly(Text *text)
 static PetscErrorCode TestWritten(Text *text)
 {
   static const int kinds[] = {0, TEXTURE, TEXTURE | GROUPS | MIXED | QUADS};
-  static const char *const suffixes[] = {"ply", "text.ply", "stl", "vtu", "msh"};
+  static const char *const suffixes[] = {"ply", "text.ply", "stl", "vtu", "msh", "off"};
 
   PetscFunctionBegin;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kinds); k++) {
