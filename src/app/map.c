@@ -156,7 +156,7 @@ static PetscErrorCode CheckArguments(const EqmCommandLine *line, MapOptions *opt
   PetscCall(PetscSNPrintf(options->usage, sizeof(options->usage), "equimap %s %s", line->command, mesh));
   options->input.usage = options->usage;
   options->input.target = line->command;
-  options->input.any_size = (PetscBool)!options->pieces;
+  options->input.any_size = PETSC_TRUE;
   PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->output));
   if (options->has_uv) PetscCall(CheckTexture(line->command, options->uv));
   if (options->has_uv) PetscCall(EqmCheckOutput(PETSC_COMM_WORLD, mesh, options->uv));
@@ -242,6 +242,7 @@ static PetscErrorCode SolvePieces(const EqmCommandLine *line, const MapOptions *
   texture = pieces.map;
   if (options->has_uv) PetscCall(EqmPiecesCharts(&pieces, &texture));
   PetscCall(EqmMapAddPolygons(pieces.map));
+  PetscCall(EqmMapRestoreUnit(pieces.map, input->unit));
   PetscCall(Write(options, ledger, pieces.map, texture));
   PetscCall(EqmMapPrintResult(PETSC_TRUE, options->output, pieces.map, NULL));
   PetscCall(EqmMapGetStatus(pieces.map, status, NULL));

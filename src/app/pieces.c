@@ -4,6 +4,7 @@
 #include "base/rows.h"
 #include "mesh/soup_private.h"
 #include "store/map_private.h"
+#include <math.h>
 #include <string.h>
 
 static PetscInt CellsOf(EqmSoup soup)
@@ -164,8 +165,9 @@ static PetscErrorCode Judge(EqmPieces *pieces)
   PetscFunctionReturn(0);
 }
 
-/* Figures of the pieces, a row each on rank 0, and the piece of every cell. */
-static PetscErrorCode AddArrays(EqmSoup given, const PetscInt *mark, EqmPieces *pieces)
+/* Figures of the pieces, a row each on rank 0, and the piece of every cell; areas in the unit of the file, 2^-unit of
+   the mesh's. */
+static PetscErrorCode AddArrays(EqmSoup given, PetscInt unit, const PetscInt *mark, EqmPieces *pieces)
 {
   const PetscInt count = CellsOf(given), n = pieces->num_pieces;
   PetscInt64 *number, *mapped, *cells, *folds, *code;
@@ -193,7 +195,7 @@ static PetscErrorCode AddArrays(EqmSoup given, const PetscInt *mark, EqmPieces *
     cells[p] = pieces->piece[p].cells;
     folds[p] = pieces->piece[p].folds;
     code[p] = pieces->piece[p].status;
-    measure[p] = pieces->piece[p].measure;
+    measure[p] = ldexp(pieces->piece[p].measure, 2 * (int)unit);
     energy[p] = pieces->piece[p].energy;
   }
   PetscCall(EqmMapAddIntegers(pieces->map, "/piece/cells", n, rank == 0 ? 0 : n, mine, 0, cells));
@@ -266,7 +268,7 @@ PetscErrorCode EqmPiecesSolve(const char *command, const EqmIntakeOptions *optio
   PetscCall(MeasureAll(given, ledger, mark, pieces));
   PetscCall(SetEnergy(command, pieces));
   PetscCall(Judge(pieces));
-  PetscCall(AddArrays(given, mark, pieces));
+  PetscCall(AddArrays(given, input->unit, mark, pieces));
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);
 }

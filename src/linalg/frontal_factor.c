@@ -54,6 +54,7 @@ static void TakeChildren(EqmFrontal f, PetscInt k, PetscBool divide, PetscScalar
 {
   for (PetscInt q = f->child_start[k]; q < f->child_start[k + 1]; q++) {
     const PetscInt child = f->child[q], rest = EqmFrontRest(f, child), block = BLOCK;
+    if (rest == 0) continue; /* clang 14's runtime does not come back from a taskloop of nothing */
     if (!divide) {
       TakeColumns(f, k, child, 0, rest, update);
       continue;
@@ -86,6 +87,7 @@ static void Eliminate(EqmFrontal f, PetscInt k, PetscBool divide)
       Note(&f->not_definite);
       return;
     }
+    if (end == rows) return;
     if (!divide) {
       EqmDenseFactorRows(own, rows, begin, end, end, rows);
       continue;

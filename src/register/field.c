@@ -5,6 +5,7 @@
 #include "h5/h5.h"
 #include "base/rows.h"
 #include "store/store.h"
+#include <math.h>
 #include <string.h>
 
 /* Letters and digits of the source's name, underscores for the rest; of a file its name alone. */
@@ -118,6 +119,16 @@ PetscErrorCode EqmFieldRead(EqmSoup soup, const char *source, EqmCarriedField *f
             "header and a row per vertex or cell",
             source);
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmFieldShift(EqmSoup soup, PetscInt exponent, EqmCarriedField *field)
+{
+  PetscInt start, count;
+
+  PetscFunctionBegin;
+  SlabOf(soup, field, &start, &count);
+  for (PetscInt k = 0; k < field->width * count; k++) field->slab[k] = ldexp(field->slab[k], (int)exponent);
   PetscFunctionReturn(0);
 }
 

@@ -15,6 +15,8 @@ typedef struct {
 /* Read "coordinates", a dataset of the soup's own HDF5 file ("/vertex/ratio"), or a CSV file with a header and a row
    per vertex or cell. Errors: EQM_ERR_IO, EQM_ERR_USAGE (as many rows as neither vertices nor cells). Collective. */
 PETSC_INTERN PetscErrorCode EqmFieldRead(EqmSoup soup, const char *source, EqmCarriedField *field);
+/* Multiply it by 2^exponent. Not collective. */
+PETSC_INTERN PetscErrorCode EqmFieldShift(EqmSoup soup, PetscInt exponent, EqmCarriedField *field);
 PETSC_INTERN PetscErrorCode EqmFieldReset(EqmCarriedField *field);
 
 #endif

@@ -68,6 +68,17 @@ static PetscBool AreOfTarget(EqmRegistration r)
                      (r->set.points == EQM_POINTS_AUTO && (r->bare || LieInTarget(r))));
 }
 
+PetscErrorCode EqmPointsTakeUnit(EqmRegistration r)
+{
+  EqmLandmarkList *const list = &r->landmarks;
+
+  PetscFunctionBegin;
+  if (r->b.intake.unit == 0 || list->width != 3 || AreOfTarget(r)) PetscFunctionReturn(0);
+  r->set.points = EQM_POINTS_SURFACE; /* said once, by the file's numbers */
+  for (PetscInt k = 0; k < 3 * list->num; k++) list->other[k] = ldexp(list->other[k], (int)-r->b.intake.unit);
+  PetscFunctionReturn(0);
+}
+
 /* Boundary vertices must correspond to boundary vertices, which no weight can change. */
 static PetscErrorCode CheckBoundaries(EqmRegistration r, const PetscInt *inside_a, const PetscInt *vertices_b,
                                       const PetscInt *inside_b)

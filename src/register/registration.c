@@ -102,6 +102,7 @@ PetscErrorCode EqmRegistrationRead(EqmRegistration r, const char *file_a, const 
   if (r->set.has_landmarks)
     PetscCall(EqmLandmarkListRead(r->comm, r->set.landmarks, r->a.soup->num_vertices,
                                   r->bare ? -1 : r->b.soup->num_vertices, &r->landmarks));
+  PetscCall(EqmPointsTakeUnit(r));
   PetscCall(EqmAddCurves(r));
   PetscCall(EqmReadFields(r));
   PetscCall(CheckTogether(r));
@@ -239,6 +240,7 @@ PetscErrorCode EqmRegistrationSolve(EqmRegistration r)
     PetscFunctionReturn(0);
   }
   PetscCall(Judge(r));
+  PetscCall(EqmRestoreUnit(r));
   PetscCall(EqmAddToResult(r));
   PetscCall(EqmTransferFields(r));
   PetscCall(EqmAddFrames(r));

@@ -108,6 +108,11 @@ PETSC_INTERN PetscErrorCode EqmSideCheckVertices(const EqmSide *side, PetscInt n
                                                  PetscInt *inside);
 /* Radius of the disk, sphere or ball that has the side's measure. Not collective. */
 PETSC_INTERN PetscReal EqmSideRadius(const EqmRegistration r, const EqmSide *side);
+/* ---- unit.c */
+/* B, read, into the unit of A: both lie in one space. Errors: EQM_ERR_MESH. Collective. */
+PETSC_INTERN PetscErrorCode EqmTakeUnitOfA(EqmRegistration r);
+/* Lengths of the result in the unit of the files again; the distributed meshes keep theirs. Collective. */
+PETSC_INTERN PetscErrorCode EqmRestoreUnit(EqmRegistration r);
 /* ---- stages.c */
 /* Watch for requests to stop, and read -checkpoint and -restart. Collective. */
 PETSC_INTERN PetscErrorCode EqmStagesBegin(EqmRegistration r);
@@ -125,6 +130,8 @@ PETSC_INTERN PetscErrorCode EqmRegistrationCheckStop(EqmRegistration r, PetscBoo
 /* Curves of -curves_a and -curves_b become landmarks, points of B. Errors: EQM_ERR_USAGE, EQM_ERR_IO. Collective. */
 PETSC_INTERN PetscErrorCode EqmAddCurves(EqmRegistration r);
 /* ---- goals.c */
+/* Landmarks that are points of B into the unit of its mesh (unit.c). Not collective. */
+PETSC_INTERN PetscErrorCode EqmPointsTakeUnit(EqmRegistration r);
 /* Check landmarks before the maps are computed. Errors: EQM_ERR_USAGE. Collective. */
 PETSC_INTERN PetscErrorCode EqmCheckLandmarks(EqmRegistration r);
 PETSC_INTERN PetscErrorCode EqmFindGoals(EqmRegistration r);

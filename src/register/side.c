@@ -190,6 +190,7 @@ PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, c
                               .usage = usage,
                               .density = density_file[0] ? density_file : NULL,
                               .repair = r->set.repair,
+                              .any_size = PETSC_TRUE,
                               .quiet = r->set.quiet};
   char name[PETSC_MAX_PATH_LEN];
   const char *restart, *with_map;
@@ -199,6 +200,7 @@ PetscErrorCode EqmSideRead(EqmRegistration r, EqmSide *side, const char *file, c
   PetscCall(EqmFirstRestart(r, name, &restart));
   PetscCall(EqmIntakeChoose(r->comm, file, restart, &options));
   PetscCall(EqmIntakeRead(r->comm, &options, r->ledger, &side->intake));
+  if (side == &r->b) PetscCall(EqmTakeUnitOfA(r));
   side->soup = side->intake.given;
   PetscCall(SetTarget(r, side));
   PetscCall(ChooseMap(r, &options, restart, map_file, &with_map, &is_copy));

@@ -34,7 +34,9 @@ static PetscErrorCode Keep(EqmRegistration r, EqmSide *side)
 
   PetscFunctionBegin;
   PetscCall(EqmKeptMeshName(r->set.checkpoint, side->name, name, sizeof(name)));
+  PetscCall(EqmSoupShift(side->soup, side->intake.unit));
   PetscCall(EqmKeptMeshWrite(side->soup, side->read, name, (PetscBool)(r->set.restart[0] != '\0')));
+  PetscCall(EqmSoupShift(side->soup, -side->intake.unit));
   PetscCall(PetscStrlcat(r->kept, basename(name), sizeof(r->kept)));
   PetscFunctionReturn(0);
 }

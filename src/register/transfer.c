@@ -114,7 +114,11 @@ PetscErrorCode EqmReadFields(EqmRegistration r)
     const char *const entry = entries[r->num_fields];
     EqmCarriedField *const field = &r->fields[r->num_fields];
     const PetscBool of_b = (PetscBool)!strncmp(entry, "b:", 2);
-    PetscCall(EqmFieldRead(of_b ? r->b.soup : r->a.soup, of_b || !strncmp(entry, "a:", 2) ? entry + 2 : entry, field));
+    const char *const source = of_b || !strncmp(entry, "a:", 2) ? entry + 2 : entry;
+    const EqmSoup soup = of_b ? r->b.soup : r->a.soup;
+
+    PetscCall(EqmFieldRead(soup, source, field));
+    if (!strcmp(source, "coordinates")) PetscCall(EqmFieldShift(soup, r->a.intake.unit, field));
     field->of_b = of_b;
   }
   PetscCall(PetscStrToArrayDestroy(count, entries));

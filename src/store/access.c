@@ -155,7 +155,10 @@ PetscErrorCode EqmMapSetHessianEigenvalues(EqmMap map, PetscInt num, const Petsc
 
 PetscErrorCode EqmMapRestoreUnit(EqmMap map, PetscInt exponent)
 {
+  const PetscInt count = map->in_space ? map->dim * (map->soup->vertex_end - map->soup->vertex_start) : 0;
+
   PetscFunctionBegin;
+  for (PetscInt k = 0; k < count; k++) map->coordinates[k] = ldexp(map->coordinates[k], (int)exponent);
   PetscCall(EqmSoupShift(map->soup, exponent));
   map->distortion.mesh_measure = ldexp(map->distortion.mesh_measure, (int)(exponent * (map->soup->cell_size - 1)));
   PetscFunctionReturn(0);
