@@ -1,23 +1,23 @@
 /* Linear systems on a level: the pattern, and the entries cell by cell. */
 #include "hierarchy/levelsystem.h"
 
-/* The neighbours of a vertex and itself, ascending; `seen` is scratch. Returns how many. */
-static PetscInt Neighbours(const EqmHierarchyLevel *level, const EqmCorners *corners, PetscInt v, PetscInt *seen,
-                           PetscInt *neighbour)
+/* Fewer vertices are not worth the threads. */
+enum { LEAST_VERTICES = 4096 };
+
+/* The neighbours of a vertex and itself, ascending. Returns how many: 1 + twice the number of triangles at most. */
+static PetscInt Neighbours(const EqmHierarchyLevel *level, const EqmCorners *corners, PetscInt v, PetscInt *neighbour)
 {
   PetscInt n = 0;
 
   neighbour[n++] = v;
-  seen[v] = v + 1;
   for (PetscInt k = corners->start[v]; k < corners->start[v + 1]; k++) {
     for (PetscInt a = 0; a < 3; a++) {
       const PetscInt u = level->cells[3 * (corners->corner[k] / 3) + a];
       PetscInt at = n;
-      if (seen[u] == v + 1) continue;
-      seen[u] = v + 1;
-      for (; at > 0 && neighbour[at - 1] > u; at--) neighbour[at] = neighbour[at - 1];
+      while (at > 0 && neighbour[at - 1] > u) at--;
+      if (at > 0 && neighbour[at - 1] == u) continue;
+      for (PetscInt q = n++; q > at; q--) neighbour[q] = neighbour[q - 1];
       neighbour[at] = u;
-      n++;
     }
   }
   return n;
@@ -38,36 +38,41 @@ static void PlaceCells(EqmLevelSystem *system, const EqmCorners *corners, PetscI
   }
 }
 
+/* A row and its cells' places, from the neighbours. */
+static void FillRow(EqmLevelSystem *system, const EqmCorners *corners, PetscInt v, const PetscInt *neighbour)
+{
+  EqmBlockMatrix *const matrix = &system->matrix;
+
+  for (PetscInt q = matrix->start[v]; q < matrix->start[v + 1]; q++) {
+    matrix->column[q] = neighbour[q - matrix->start[v]];
+    if (matrix->column[q] == v) matrix->diagonal[v] = q;
+  }
+  PlaceCells(system, corners, v);
+}
+
 static PetscErrorCode MakePattern(EqmLevelSystem *system)
 {
   const EqmHierarchyLevel *const level = system->level;
   const PetscInt n = level->num_vertices;
   EqmBlockMatrix *const matrix = &system->matrix;
   EqmCorners corners;
-  PetscInt *seen, *neighbour, at = 0, most = 0;
+  PetscInt *loose; /* neighbours of vertex v from 2 corners.start[v] + v on */
 
   PetscFunctionBegin;
+  matrix->num_rows = n;
   PetscCall(EqmCornersCreate(n, level->num_cells, level->cells, &corners));
-  for (PetscInt v = 0; v < n; v++) most = PetscMax(most, corners.start[v + 1] - corners.start[v]);
-  PetscCall(PetscCalloc1(n, &seen));
-  PetscCall(PetscMalloc1(2 * most + 1, &neighbour));
+  PetscCall(PetscMalloc1(6 * level->num_cells + n, &loose));
   PetscCall(PetscMalloc1(n + 1, &matrix->start));
   PetscCall(PetscMalloc1(n, &matrix->diagonal));
-  PetscCall(PetscMalloc1(3 * level->num_cells + n + level->num_boundary, &matrix->column));
   matrix->start[0] = 0;
-  for (PetscInt v = 0; v < n; v++) {
-    const PetscInt count = Neighbours(level, &corners, v, seen, neighbour);
-    matrix->start[v] = at;
-    for (PetscInt k = 0; k < count; k++) {
-      if (neighbour[k] == v) matrix->diagonal[v] = at;
-      matrix->column[at++] = neighbour[k];
-    }
-    matrix->start[v + 1] = at;
-    PlaceCells(system, &corners, v);
-  }
-  matrix->num_rows = n;
-  PetscCall(PetscFree(seen));
-  PetscCall(PetscFree(neighbour));
+#pragma omp parallel for schedule(static) if (n > LEAST_VERTICES)
+  for (PetscInt v = 0; v < n; v++)
+    matrix->start[v + 1] = Neighbours(level, &corners, v, loose + 2 * corners.start[v] + v);
+  for (PetscInt v = 0; v < n; v++) matrix->start[v + 1] += matrix->start[v];
+  PetscCall(PetscMalloc1(matrix->start[n], &matrix->column));
+#pragma omp parallel for schedule(static) if (n > LEAST_VERTICES)
+  for (PetscInt v = 0; v < n; v++) FillRow(system, &corners, v, loose + 2 * corners.start[v] + v);
+  PetscCall(PetscFree(loose));
   PetscCall(EqmCornersDestroy(&corners));
   PetscFunctionReturn(0);
 }
