@@ -1,34 +1,70 @@
 #include "hierarchy/movedrows.h"
 #include "base/rows.h"
 
-/* Where each row begins, here and where it comes from; then a leaf for each block. Collective. */
-static PetscErrorCode FindEntries(PetscSF rows, const EqmBlockMatrix *from, EqmMovedRows *to)
+/* Fewer rows are not worth the threads. */
+enum { LEAST_ROWS = 4096 };
+
+/* Where each row begins, here and where it comes from. Collective. */
+static PetscErrorCode FindRows(PetscSF rows, const EqmBlockMatrix *from, EqmMovedRows *to)
 {
   EqmBlockMatrix *const matrix = &to->matrix;
   const PetscInt n = matrix->num_rows;
-  const PetscSFNode *source;
-  PetscSFNode *remote;
-  PetscInt *begin, *end;
-  MPI_Comm comm;
+  PetscInt *end;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n + 1, &matrix->start));
-  PetscCall(PetscMalloc2(n, &begin, n, &end));
-  PetscCall(EqmRowsOfToLeaves(rows, MPIU_INT, 1, from->start, begin));
+  PetscCall(PetscMalloc1(n, &to->begin));
+  PetscCall(PetscMalloc1(n, &end));
+  PetscCall(EqmRowsOfToLeaves(rows, MPIU_INT, 1, from->start, to->begin));
   PetscCall(EqmRowsOfToLeaves(rows, MPIU_INT, 1, from->start + 1, end));
   matrix->start[0] = 0;
-  for (PetscInt i = 0; i < n; i++) matrix->start[i + 1] = matrix->start[i] + end[i] - begin[i];
-  PetscCall(PetscSFGetGraph(rows, NULL, NULL, NULL, &source));
-  PetscCall(PetscMalloc1(matrix->start[n], &remote));
-  for (PetscInt i = 0, at = 0; i < n; i++) {
-    for (PetscInt q = begin[i]; q < end[i]; q++) remote[at++] = (PetscSFNode){.rank = source[i].rank, .index = q};
-  }
-  PetscCall(PetscFree2(begin, end));
+  for (PetscInt i = 0; i < n; i++) matrix->start[i + 1] = matrix->start[i] + end[i] - to->begin[i];
+  PetscCall(PetscFree(end));
+  PetscFunctionReturn(0);
+}
+
+/* A leaf for each block. Collective. */
+static PetscErrorCode FindEntries(PetscSF rows, const EqmBlockMatrix *from, EqmMovedRows *to)
+{
+  const PetscInt n = to->matrix.num_rows, *const start = to->matrix.start;
+  const PetscSFNode *source;
+  PetscSFNode *remote;
+  PetscMPIInt size;
+  MPI_Comm comm;
+
+  PetscFunctionBegin;
   PetscCall(PetscObjectGetComm((PetscObject)rows, &comm));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (size == 1) PetscFunctionReturn(0);
+  PetscCall(PetscSFGetGraph(rows, NULL, NULL, NULL, &source));
+  PetscCall(PetscMalloc1(start[n], &remote));
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt q = start[i]; q < start[i + 1]; q++)
+      remote[q] = (PetscSFNode){.rank = source[i].rank, .index = to->begin[i] + q - start[i]};
+  }
   PetscCall(PetscSFCreate(comm, &to->entries));
-  PetscCall(PetscSFSetGraph(to->entries, from->start[from->num_rows], matrix->start[n], NULL, PETSC_OWN_POINTER, remote,
+  PetscCall(PetscSFSetGraph(to->entries, from->start[from->num_rows], start[n], NULL, PETSC_OWN_POINTER, remote,
                             PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(to->entries));
+  PetscFunctionReturn(0);
+}
+
+/* Numbers of the blocks' columns. Collective. */
+static PetscErrorCode FetchColumns(const EqmBlockMatrix *from, const PetscInt *number, EqmMovedRows *to)
+{
+  EqmBlockMatrix *const matrix = &to->matrix;
+  const PetscInt n = matrix->num_rows, length = from->start[from->num_rows];
+  PetscInt *column;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(matrix->start[n], &matrix->column));
+  PetscCall(PetscMalloc1(length, &column));
+  for (PetscInt q = 0; q < length; q++) column[q] = number[from->column[q]];
+  if (to->entries) PetscCall(EqmRowsOfToLeaves(to->entries, MPIU_INT, 1, column, matrix->column));
+  for (PetscInt i = 0; i < n && !to->entries; i++)
+    PetscCall(PetscArraycpy(matrix->column + matrix->start[i], column + to->begin[i],
+                            matrix->start[i + 1] - matrix->start[i]));
+  PetscCall(PetscFree(column));
   PetscFunctionReturn(0);
 }
 
@@ -78,24 +114,20 @@ static PetscErrorCode NumberColumns(PetscInt first, EqmMovedRows *to)
 
 PetscErrorCode EqmMovedRowsCreate(PetscSF rows, const EqmBlockMatrix *from, const PetscInt *number, EqmMovedRows *to)
 {
-  PetscInt *column, n, first = 0;
-  const PetscInt length = from->start[from->num_rows];
+  PetscInt n, end = 0;
   MPI_Comm comm;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetComm((PetscObject)rows, &comm));
   PetscCall(PetscSFGetGraph(rows, NULL, &n, NULL, NULL));
   *to = (EqmMovedRows){.matrix = {.num_rows = n}};
+  PetscCall(FindRows(rows, from, to));
   PetscCall(FindEntries(rows, from, to));
-  PetscCall(PetscMalloc1(to->matrix.start[n], &to->matrix.column));
+  PetscCall(FetchColumns(from, number, to));
   PetscCall(PetscMalloc1(to->matrix.start[n], &to->matrix.entry));
-  PetscCall(PetscMalloc1(length, &column));
-  for (PetscInt q = 0; q < length; q++) column[q] = number[from->column[q]];
-  PetscCall(EqmRowsOfToLeaves(to->entries, MPIU_INT, 1, column, to->matrix.column));
-  PetscCall(PetscFree(column));
-  PetscCallMPI(MPI_Scan(&n, &first, 1, MPIU_INT, MPI_SUM, comm));
-  PetscCall(FindGhosts(first - n, to));
-  PetscCall(NumberColumns(first - n, to));
+  PetscCallMPI(MPI_Scan(&n, &end, 1, MPIU_INT, MPI_SUM, comm));
+  PetscCall(FindGhosts(end - n, to));
+  PetscCall(NumberColumns(end - n, to));
   PetscCall(EqmRowsCreateSF(comm, n, to->num_ghosts, to->ghost, &to->halo));
   PetscFunctionReturn(0);
 }
@@ -105,6 +137,7 @@ PetscErrorCode EqmMovedRowsDestroy(EqmMovedRows *to)
   PetscFunctionBegin;
   PetscCall(EqmBlockMatrixReset(&to->matrix));
   PetscCall(PetscFree(to->ghost));
+  PetscCall(PetscFree(to->begin));
   PetscCall(PetscSFDestroy(&to->halo));
   PetscCall(PetscSFDestroy(&to->entries));
   PetscFunctionReturn(0);
@@ -112,7 +145,17 @@ PetscErrorCode EqmMovedRowsDestroy(EqmMovedRows *to)
 
 PetscErrorCode EqmMovedRowsFill(const EqmBlockMatrix *from, EqmMovedRows *to)
 {
+  EqmBlockMatrix *const matrix = &to->matrix;
+
   PetscFunctionBegin;
-  PetscCall(EqmRowsOfToLeaves(to->entries, MPIU_REAL, 4, from->entry, to->matrix.entry));
+  if (to->entries) {
+    PetscCall(EqmRowsOfToLeaves(to->entries, MPIU_REAL, 4, from->entry, matrix->entry));
+    PetscFunctionReturn(0);
+  }
+#pragma omp parallel for schedule(static) if (matrix->num_rows > LEAST_ROWS)
+  for (PetscInt i = 0; i < matrix->num_rows; i++) {
+    for (PetscInt q = matrix->start[i]; q < matrix->start[i + 1]; q++)
+      matrix->entry[q] = from->entry[to->begin[i] + q - matrix->start[i]];
+  }
   PetscFunctionReturn(0);
 }

@@ -9,7 +9,8 @@ typedef struct {
   EqmBlockMatrix matrix;       /* the rows of this rank; columns: they, then ghosts */
   PetscInt num_ghosts, *ghost; /* columns that are other ranks' rows: their numbers, ascending */
   PetscSF halo;                /* roots: rows; leaves: ghosts */
-  PetscSF entries;             /* roots: blocks that are moved; leaves: those of `matrix` */
+  PetscInt *begin;             /* per row: where its blocks begin, on the rank that it comes from */
+  PetscSF entries;             /* roots: blocks that are moved; leaves: those of `matrix`; NULL on one rank alone */
 } EqmMovedRows;
 
 /* `rows`: roots, the rows of `from`; leaves, all rows of this rank, which are numbered rank by rank. `number`: of each
