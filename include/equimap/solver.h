@@ -38,6 +38,9 @@ PETSC_EXTERN PetscErrorCode EqmSolverSetTolerances(EqmSolver solver, PetscReal e
                                                    PetscReal gradient_tol, PetscInt max_it);
 /* EqmSolverSetBalance - weight of the angle energy beside the area energy, as -balance has it (docs/methods.md). */
 PETSC_EXTERN PetscErrorCode EqmSolverSetBalance(EqmSolver solver, PetscReal epsilon);
+/* EqmSolverSetBalanceEnergy - lower the weight of the angle energy until the area energy is no more than this, as
+   -balance_energy has it. */
+PETSC_EXTERN PetscErrorCode EqmSolverSetBalanceEnergy(EqmSolver solver, PetscReal energy);
 /* EqmSolverSetCorners - square: four boundary vertices (input numbers) for (0,0), (1,0), (1,1), (0,1). */
 PETSC_EXTERN PetscErrorCode EqmSolverSetCorners(EqmSolver solver, const PetscInt corners[4]);
 /* EqmSolverSetFirstMap - begin with the map that has the given places (of the target, `dim` coordinates per owned

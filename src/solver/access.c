@@ -69,6 +69,14 @@ PetscErrorCode EqmSolverSetBalance(EqmSolver solver, PetscReal epsilon)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EqmSolverSetBalanceEnergy(EqmSolver solver, PetscReal energy)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckNotSetUp(solver, PETSC_FUNCTION_NAME));
+  solver->settings.balance_energy = energy;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmSolverSetCorners(EqmSolver solver, const PetscInt corners[4])
 {
   PetscFunctionBegin;

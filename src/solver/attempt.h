@@ -36,4 +36,11 @@ PETSC_INTERN PetscErrorCode EqmAttemptsEnd(EqmSolver solver, EqmAttempts *attemp
    iterations go on. With -restart, the map that its checkpoint has. Collective. */
 PETSC_INTERN PetscErrorCode EqmAttemptContinue(EqmSolver solver, EqmAttempts *attempts, EqmAttempt *before);
 
+
+/* ---- balance.c */
+/* Without -balance, the weight that -balance_energy begins with. Before the terms are made. Not collective. */
+PETSC_INTERN PetscErrorCode EqmBalanceBegin(EqmSolver solver);
+/* With -balance_energy: smaller weights of the angle energy, until E is low enough. Collective. */
+PETSC_INTERN PetscErrorCode EqmBalanceLower(EqmSolver solver, EqmAttempts *attempts);
+
 #endif

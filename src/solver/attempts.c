@@ -250,6 +250,7 @@ PetscErrorCode EqmSolverTryAgain(EqmSolver solver)
   PetscBool other_starts;
 
   PetscFunctionBegin;
+  PetscCall(EqmBalanceLower(solver, &attempts));
   PetscCall(GoOnMixed(solver, &attempts));
   other_starts = HasOtherStarts(solver);
   if (other_starts) PetscCall(TryStarts(solver, &attempts));

@@ -13,6 +13,7 @@ PetscErrorCode EqmSolverSettingsDefault(EqmSolverSettings *settings)
                                   .ratio_tol = -1.,
                                   .gradient_tol = -1.,
                                   .balance = -1.,
+                                  .balance_energy = -1.,
                                   .stagnation = 5,
                                   .inner_steps = -1,
                                   .checkpoint_every = -1};
@@ -118,6 +119,11 @@ static PetscErrorCode ReadCommon(EqmSolver solver, PetscOptionItems *PetscOption
                              "weight of the angle energy beside the area energy; .01 gives one nearly unique, smoother "
                              "map (-1: the method's own, 0: none)",
                              "EqmSolverSetFromOptions", set->balance, &set->balance, NULL));
+  PetscCall(
+      PetscOptionsReal("-balance_energy",
+                       "the least shear with an area energy of no more than this: -balance (.1 if not given) falls "
+                       "until the map has it (-1: -balance stays)",
+                       "EqmSolverSetFromOptions", set->balance_energy, &set->balance_energy, NULL));
   if (!solver->prefix[0]) { /* once per run, not per inner solver */
     PetscCall(ReadRunOptions(set, PetscOptionsObject));
     PetscCall(PetscOptionsBool("-monitor", "show progress; equimap itself always does, unless -quiet",

@@ -1,5 +1,5 @@
 /* How settings without a value get that of the formulation, and what does not go together. */
-#include "solver/solver_private.h"
+#include "solver/attempt.h"
 #include <string.h>
 
 PetscErrorCode EqmSolverCheckSettings(EqmSolver solver)
@@ -17,6 +17,9 @@ PetscErrorCode EqmSolverCheckSettings(EqmSolver solver)
     EqmFail(comm, EQM_ERR_USAGE, "-checkpoint_every %" PetscInt_FMT ": give 1 or more, 0 or -1", set->checkpoint_every);
   if (set->balance < 0. && set->balance != -1.)
     EqmFail(comm, EQM_ERR_USAGE, "-balance %.6g: give 0 or more; .001 to .1 are useful", (double)set->balance);
+  if (!(set->balance_energy > 0.) && set->balance_energy != -1.)
+    EqmFail(comm, EQM_ERR_USAGE, "-balance_energy %.6g: give more than 0; 1e-5 to 1e-3 are useful",
+            (double)set->balance_energy);
   PetscFunctionReturn(0);
 }
 
@@ -101,6 +104,7 @@ PetscErrorCode EqmSolverResolveSettings(EqmSolver solver)
 
   PetscFunctionBegin;
   PetscCall(EqmSolverCheckSettings(solver));
+  PetscCall(EqmBalanceBegin(solver));
   if (!solver->method)
     PetscCall(EqmSolverFindMethod(solver, NULL));
   else

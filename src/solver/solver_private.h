@@ -13,7 +13,8 @@ typedef struct {
   char objective[32]; /* empty: the formulation's */
   EqmStartOptions start;
   PetscInt max_it, max_factorizations;
-  PetscReal energy_rtol, energy_atol, ratio_tol, energy_target, gradient_tol, wall_time, balance;
+  PetscReal energy_rtol, energy_atol, ratio_tol, energy_target, gradient_tol, wall_time;
+  PetscReal balance, balance_energy;
   PetscInt stagnation;  /* iterations that energy_rtol refers to */
   PetscInt inner_steps; /* of lm, before its options are read */
   PetscInt unfolding;   /* an EqmUnfolding */
