@@ -246,7 +246,6 @@ static PetscErrorCode TryNewton(EqmSolver solver, PetscBool other_starts, EqmAtt
 PetscErrorCode EqmSolverTryAgain(EqmSolver solver)
 {
   EqmAttempts attempts = {.first = solver->settings, .suffix = solver->checkpoints.suffix, .count = 1};
-
   PetscBool other_starts;
 
   PetscFunctionBegin;
