@@ -432,7 +432,7 @@ def main():
             alone = {"pairs": check_all_pairs, "overhead": check_overhead, "methods": lambda program: check_methods(program, True)}
             alone.get(sys.argv[3], lambda program: check_many_kills(program, int(sys.argv[3])))(program)
             return 0
-        check_kills(program, program.ranks, 4, random.Random(program.ranks))
+        check_kills(program, program.ranks, 2 if program.ranks == 2 else 4, random.Random(program.ranks))
         checks = [check_methods, check_other_ranks, check_kept_mesh, check_stopping, check_register, check_attempts]
         if program.ranks != 2:  # one rank alone reads and writes here
             checks += [check_damage, check_foreign, check_finished, check_full_disk]

@@ -222,7 +222,7 @@ static PetscErrorCode CheckIterations(void)
 
   PetscFunctionBegin;
   PetscCall(TestMeshCreate(PETSC_COMM_WORLD, "blob", 3375, 0, &test));
-  PetscCall(TestSolve(test.mesh, "ball", "-linear_solver multigrid -max_it 60 -energy_rtol 0", &solver));
+  PetscCall(TestSolve(test.mesh, "ball", "-linear_solver multigrid -max_it 40 -energy_rtol 0", &solver));
   PetscCall(EqmSolverGetHistory(solver, &count, &row));
   CHECK(row[count - 1].energy < 5.8e-5, "E %g after %d iterations", (double)row[count - 1].energy, (int)count - 1);
   PetscCall(EqmSolverDestroy(&solver));
