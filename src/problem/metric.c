@@ -245,20 +245,15 @@ static PetscErrorCode ApplyByDof(EqmMetric metric, Vec g, Vec h)
    compression ask for; with added terms, which may be stiff for these, it does not. */
 static PetscErrorCode ApplyCoupled(EqmMetric metric, Vec g, Vec h)
 {
-  Vec gradient = g;
   PetscScalar *array;
 
   PetscFunctionBegin;
-  if (metric->adds_smooth && g == h) {
-    PetscCall(VecDuplicate(g, &gradient));
-    PetscCall(VecCopy(g, gradient));
-  }
+  if (metric->adds_smooth) PetscCall(EqmSolenoidalSolve(metric->smooth, &metric->at, g));
   if (g != h) PetscCall(VecCopy(g, h));
   PetscCall(VecGetArray(h, &array));
   PetscCall(EqmLinearApply(metric->gauss_newton, 1, array, array));
   PetscCall(VecRestoreArray(h, &array));
-  if (metric->adds_smooth) PetscCall(EqmSolenoidalAdd(metric->smooth, &metric->at, gradient, h));
-  if (gradient != g) PetscCall(VecDestroy(&gradient));
+  if (metric->adds_smooth) PetscCall(EqmSolenoidalAdd(metric->smooth, &metric->at, h));
   PetscFunctionReturn(0);
 }
 

@@ -132,12 +132,11 @@ static PetscErrorCode RestrictAll(EqmSolenoidal space, const PetscReal *x)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmSolenoidalAdd(EqmSolenoidal space, const EqmPlace *place, Vec g, Vec h)
+PetscErrorCode EqmSolenoidalSolve(EqmSolenoidal space, const EqmPlace *place, Vec g)
 {
   const EqmDomain domain = space->problem->domain;
-  const PetscInt num_owned = domain->mesh->num_owned;
-  PetscBLASInt n, info;
   const PetscBLASInt one = 1;
+  PetscBLASInt n, info;
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(domain->mesh->ledger, EQM_EVENT_SOLVE));
@@ -145,8 +144,19 @@ PetscErrorCode EqmSolenoidalAdd(EqmSolenoidal space, const EqmPlace *place, Vec 
   PetscCall(RestrictAll(space, place->x));
   PetscCall(PetscBLASIntCast(space->size, &n));
   PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &n, &one, space->factor, &n, space->coefficient, &n, &info));
+  PetscCall(EqmEventEnd(domain->mesh->ledger, EQM_EVENT_SOLVE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmSolenoidalAdd(EqmSolenoidal space, const EqmPlace *place, Vec h)
+{
+  const EqmDomain domain = space->problem->domain;
+
+  PetscFunctionBegin;
+  PetscCall(EqmEventBegin(domain->mesh->ledger, EQM_EVENT_SOLVE));
 #pragma omp parallel for schedule(static)
-  for (PetscInt v = 0; v < num_owned; v++) Prolong(space, place->x + 3 * v, space->coefficient, space->ambient + 3 * v);
+  for (PetscInt v = 0; v < domain->mesh->num_owned; v++)
+    Prolong(space, place->x + 3 * v, space->coefficient, space->ambient + 3 * v);
   PetscCall(EqmDomainAddProjected(domain, place, space->ambient, h));
   PetscCall(EqmEventEnd(domain->mesh->ledger, EQM_EVENT_SOLVE));
   PetscFunctionReturn(0);

@@ -138,7 +138,8 @@ static PetscErrorCode Correct(Case *c, PetscReal share)
   PetscFunctionBegin;
   PetscCall(EqmSolenoidalFactor(c->space, &c->place, c->weights, share));
   PetscCall(VecZeroEntries(c->h));
-  PetscCall(EqmSolenoidalAdd(c->space, &c->place, c->g, c->h));
+  PetscCall(EqmSolenoidalSolve(c->space, &c->place, c->g));
+  PetscCall(EqmSolenoidalAdd(c->space, &c->place, c->h));
   PetscFunctionReturn(0);
 }
 
