@@ -114,8 +114,9 @@ static PetscBool ParseHead(EqmInput *in, EqmPlyHeader *header)
 
   if (EqmPlyParseHeader(in, header) || header->num_vertices > PETSC_MAX_INT) return PETSC_FALSE;
   for (PetscInt e = 0; e < header->num_elements; ++e) {
-    const EqmPlyElement *const element = &header->element[e];
+    EqmPlyElement *const element = &header->element[e];
 
+    element->position = NULL; /* rows are read from other bytes, in which the header's line is not */
     if (element->is_face || element->is_strips) ++num_cells;
     if (header->textured && element->has_texture) return PETSC_FALSE;
   }

@@ -71,6 +71,10 @@ static PetscErrorCode TestPly(Text *text)
   MakePly(text, 9, PETSC_TRUE);
   text->length -= 12;
   PetscCall(CheckRefused(text, EQM_ERR_IO));
+  *text = (Text){.end = "\n"};
+  Line(text, "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z");
+  Line(text, "element face 1\nproperty list uchar int vertex_indices\nend_header\n0\n1\n2\n3\n3 0 1 2");
+  PetscCall(CheckRefused(text, EQM_ERR_IO)); /* as many lines as rows, of too few bytes */
   PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
   PetscFunctionReturn(0);
 }
