@@ -7,6 +7,7 @@
 #include "intake/intake.h"
 #include "maprun.h"
 #include "pieces.h"
+#include "start/start.h"
 #include "store/map_private.h"
 #include "store/output.h"
 #include <string.h>
@@ -110,14 +111,21 @@ static PetscErrorCode CheckTexture(const char *command, const char *file)
 /* -pieces each: surfaces; what belongs to one run cannot be had. */
 static PetscErrorCode CheckPieces(const char *command, const MapOptions *options)
 {
-  const char *const other = options->has_checkpoint || options->has_restart ? "-checkpoint"
-                            : options->has_history                          ? "-history"
-                            : options->hessian_eigenvalues > 0              ? "-hessian_eigenvalues"
-                                                                            : NULL;
+  char start[PETSC_MAX_PATH_LEN] = "";
+  PetscBool has_corners;
 
   PetscFunctionBegin;
   if (options->pieces == 0) PetscFunctionReturn(0);
-  if (!strcmp(command, "ball"))
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-start", start, sizeof(start), NULL));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-corners", &has_corners));
+  const char *const other = options->has_checkpoint || options->has_restart ? "-checkpoint"
+                            : options->has_history                          ? "-history"
+                            : options->hessian_eigenvalues > 0              ? "-hessian_eigenvalues"
+                            : EqmStartIsFile(start)                         ? "-start FILE"
+                            : has_corners                                   ? "-corners"
+                                                                            : NULL;
+
+  if (!strcmp(command, "ball") || !strcmp(command, "cube"))
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-pieces each is for surfaces; of a solid take one piece: -piece K");
   if (other)
     EqmFail(PETSC_COMM_WORLD, EQM_ERR_USAGE, "-pieces each has no %s, as that is of one run; take one piece: -piece K",

@@ -27,6 +27,10 @@ typedef struct {
    piece can be mapped), EQM_ERR_USAGE. */
 PETSC_INTERN PetscErrorCode EqmPiecesSolve(const char *command, const EqmIntakeOptions *options, const EqmIntake *input,
                                            const EqmStopFile *stop_file, EqmLedger ledger, EqmPieces *pieces);
+/* The figures of the whole, after its pieces have been mapped: ratios, energies, status and arrays of pieces->map.
+   `mark` is the EqmCellFate of the cells of the slab. Collective. */
+PETSC_INTERN PetscErrorCode EqmPiecesMeasure(const char *command, const EqmIntake *input, EqmLedger ledger,
+                                             const PetscInt *mark, EqmPieces *pieces);
 /* The map with the images of its pieces side by side in the unit square, their areas in proportion: for a texture. Of
    maps to the disk or the square. Collective. */
 PETSC_INTERN PetscErrorCode EqmPiecesCharts(const EqmPieces *pieces, EqmMap *charts);

@@ -51,10 +51,10 @@ PetscErrorCode EqmPrintPreparation(MPI_Comm comm, const char *part, const EqmPre
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmIntakePrepare(const EqmPrepareOptions *options, EqmIntake *intake)
+/* The prepared mesh is mapped, if it is another than the given one. */
+static PetscErrorCode Adopt(EqmIntake *intake)
 {
   PetscFunctionBegin;
-  PetscCall(EqmSoupPrepare(intake->given, options, &intake->preparation));
   intake->repair = intake->preparation.repair;
   if (intake->preparation.is_changed) {
     intake->mapped = intake->preparation.soup;
@@ -62,6 +62,23 @@ PetscErrorCode EqmIntakePrepare(const EqmPrepareOptions *options, EqmIntake *int
   } else {
     PetscCall(EqmPreparationReset(&intake->preparation));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmIntakePrepare(const EqmPrepareOptions *options, EqmIntake *intake)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmSoupPrepare(intake->given, options, &intake->preparation));
+  PetscCall(Adopt(intake));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmIntakePrepareRest(const EqmPrepareOptions *options, const EqmPreparation *begun, EqmIntake *intake)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmPreparationCopy(intake->given, begun, &intake->preparation));
+  PetscCall(EqmPrepareRest(intake->given, options, intake->components->automatic, &intake->preparation));
+  PetscCall(Adopt(intake));
   PetscFunctionReturn(0);
 }
 
@@ -75,6 +92,21 @@ static PetscErrorCode Unprepare(EqmIntake *intake)
   PetscFunctionReturn(0);
 }
 
+/* Vertices of a piece by their numbers in the whole. Of cells the numbers are those of the prepared mesh, as always. */
+static PetscErrorCode NameVertices(const EqmIntake *intake, EqmDiagnosis *diagnosis)
+{
+  PetscFunctionBegin;
+  for (int f = 0; f < EQM_NUM_FINDINGS; f++) {
+    EqmFinding *const finding = &diagnosis->finding[f];
+
+    if (f == EQM_FINDING_BAD_INDEX || f == EQM_FINDING_DEGENERATE_CELL || f == EQM_FINDING_DUPLICATE_CELL ||
+        f == EQM_FINDING_NO_INTERIOR_VERTEX || finding->shown == 0)
+      continue;
+    PetscCall(EqmComponentsName(intake->components, intake->piece, 4 * finding->shown, finding->where[0]));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EqmIntakeDiagnose(const char *wanted, PetscBool with_places, EqmIntake *intake, PetscBool *fatal,
                                  char *text, size_t length)
 {
@@ -84,6 +116,7 @@ PetscErrorCode EqmIntakeDiagnose(const char *wanted, PetscBool with_places, EqmI
   PetscFunctionBegin;
   PetscCall(EqmSoupDiagnose(intake->mapped, &diagnosis));
   if (with_places) PetscCall(EqmDiagnosisPlaceHandle(intake->mapped, &diagnosis));
+  if (intake->components) PetscCall(NameVertices(intake, &diagnosis));
   intake->topology = diagnosis.topology;
   natural = EqmTargetOfTopology(diagnosis.topology);
   intake->target = wanted || !natural ? wanted : natural->name;
@@ -274,10 +307,11 @@ PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap fo
   PetscFunctionReturn(0);
 }
 
-/* Free what EqmIntakeRead made. Collective. */
+/* Free what EqmIntakeRead or EqmIntakePiece made. Collective. */
 PetscErrorCode EqmIntakeDestroy(EqmIntake *intake)
 {
   PetscFunctionBegin;
+  PetscCall(EqmPreparationReset(&intake->begun));
   PetscCall(EqmPreparationReset(&intake->preparation));
   PetscCall(EqmSoupDestroy(&intake->given));
   intake->mapped = NULL;

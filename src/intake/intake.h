@@ -5,7 +5,7 @@
 
 #include <equimap/map.h>
 #include <equimap/mesh.h>
-#include "prepare/prepare.h"
+#include "prepare/components.h"
 
 /* How a run reads a mesh. */
 typedef struct {
@@ -33,10 +33,13 @@ typedef struct {
   PetscInt *parent; /* per cell of the slab of `mapped` the cell of `given` it comes from, -1: it was added; NULL where
                        they are the same */
   EqmRepair repair; /* counts of the repair */
-  EqmPreparation preparation; /* steps of the preparation, and the map back */
-  PetscInt unit;              /* both are divided by 2^unit: EqmMapRestoreUnit before maps of them are written */
-  EqmTopology topology;       /* of `mapped` */
-  const char *target;         /* what it can be mapped to */
+  EqmPreparation preparation;      /* steps of the preparation, and the map back */
+  PetscInt unit;                   /* both are divided by 2^unit: EqmMapRestoreUnit before maps of them are written */
+  EqmTopology topology;            /* of `mapped` */
+  const char *target;              /* what it can be mapped to */
+  const EqmComponents *components; /* of a piece that EqmIntakePiece has taken: out of these; else NULL */
+  PetscInt piece;                  /* its number among them, from 0 */
+  EqmPreparation begun;            /* what the steps that all pieces have in common have made of it */
 } EqmIntake;
 
 /* ---- choose.c */
@@ -48,14 +51,19 @@ PETSC_INTERN PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions 
 PETSC_INTERN PetscErrorCode EqmIntakeWithoutSplits(const EqmIntakeOptions *options, const EqmIntake *intake,
                                                    EqmIntake *whole, PetscBool *can);
 /* EqmIntakeReadGiven - only read the mesh, with density and noise: of a mesh whose pieces are mapped one by one.
-   EqmIntakePiece - prepare the piece of options->prepare, out of that mesh.
+   EqmIntakeCut - prepare that mesh as far as all of its pieces have in common, and cut it into them.
+   EqmIntakePiece - one of them, prepared: a mesh of its own, whose vertices are the ones that it needs. `number` counts
+   from 0, the largest.
 
-   Collective. piece - shares `given` with `intake`; free its preparation with EqmPreparationReset. num_pieces - how
-   many there are. can - it can be mapped; else `reason` says why not. */
+   Collective. components - to be freed with EqmComponentsReset after the pieces; piece - to be freed with
+   EqmIntakeDestroy. can - it can be mapped; else `reason` says why not, in numbers of the whole. */
 PETSC_INTERN PetscErrorCode EqmIntakeReadGiven(MPI_Comm comm, const EqmIntakeOptions *options, EqmLedger ledger,
                                                EqmIntake *intake);
-PETSC_INTERN PetscErrorCode EqmIntakePiece(const EqmIntakeOptions *options, const EqmIntake *intake, EqmIntake *piece,
-                                           PetscInt *num_pieces, PetscBool *can, char *reason, size_t length);
+PETSC_INTERN PetscErrorCode EqmIntakeCut(const EqmIntakeOptions *options, const EqmIntake *intake,
+                                         EqmComponents *components);
+PETSC_INTERN PetscErrorCode EqmIntakePiece(const EqmIntakeOptions *options, const EqmComponents *components,
+                                           PetscInt number, EqmIntake *piece, PetscBool *can, char *reason,
+                                           size_t length);
 PETSC_INTERN PetscErrorCode EqmIntakeTakeMap(const EqmIntake *intake, EqmMesh mesh, EqmMap found, EqmMap *map);
 /* ---- given.c */
 /* The fate of a cell of the file; the highest of its parts. */

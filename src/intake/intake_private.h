@@ -12,6 +12,9 @@ PETSC_INTERN PetscErrorCode EqmIntakeBegin(MPI_Comm comm, const EqmIntakeOptions
 PETSC_INTERN EqmPrepareOptions EqmIntakePrepareOptions(const EqmIntakeOptions *options);
 /* Prepare a copy of the input; if nothing changes, the input itself is mapped. Collective. */
 PETSC_INTERN PetscErrorCode EqmIntakePrepare(const EqmPrepareOptions *options, EqmIntake *intake);
+/* The same for a piece, on which the steps that all pieces have in common have been run: `begun`. Collective. */
+PETSC_INTERN PetscErrorCode EqmIntakePrepareRest(const EqmPrepareOptions *options, const EqmPreparation *begun,
+                                                 EqmIntake *intake);
 /* Diagnose the mesh: topology, target (the named one or that of the topology), defects. Collective. */
 PETSC_INTERN PetscErrorCode EqmIntakeDiagnose(const char *wanted, PetscBool with_places, EqmIntake *intake,
                                               PetscBool *fatal, char *text, size_t length);

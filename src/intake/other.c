@@ -13,34 +13,29 @@ PetscErrorCode EqmIntakeReadGiven(MPI_Comm comm, const EqmIntakeOptions *options
   PetscFunctionReturn(0);
 }
 
-/* Prepare the mesh that was read anew, and diagnose what comes out. Collective. */
-static PetscErrorCode PrepareAnew(const char *target, const EqmPrepareOptions *prepare, const EqmIntake *intake,
-                                  EqmIntake *other, PetscBool *can, char *text, size_t length)
+PetscErrorCode EqmIntakeCut(const EqmIntakeOptions *options, const EqmIntake *intake, EqmComponents *components)
 {
-  PetscBool fatal;
+  const EqmPrepareOptions prepare = EqmIntakePrepareOptions(options);
 
   PetscFunctionBegin;
-  *other = (EqmIntake){.given = intake->given, .mapped = intake->given};
-  PetscCall(EqmIntakePrepare(prepare, other));
-  PetscCall(EqmIntakeDiagnose(target, PETSC_FALSE, other, &fatal, text, length));
-  *can = (PetscBool)!fatal;
+  PetscCall(EqmComponentsCreate(intake->given, &prepare, components));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmIntakePiece(const EqmIntakeOptions *options, const EqmIntake *intake, EqmIntake *piece,
-                              PetscInt *num_pieces, PetscBool *can, char *reason, size_t length)
+PetscErrorCode EqmIntakePiece(const EqmIntakeOptions *options, const EqmComponents *components, PetscInt number,
+                              EqmIntake *piece, PetscBool *can, char *reason, size_t length)
 {
-  EqmPrepareOptions prepare = EqmIntakePrepareOptions(options);
+  const EqmPrepareOptions prepare = EqmIntakePrepareOptions(options);
+  PetscBool fatal;
   char *end;
 
   PetscFunctionBegin;
-  prepare.each_piece = PETSC_TRUE;
-  PetscCall(PrepareAnew(options->target, &prepare, intake, piece, can, reason, length));
-  *num_pieces = 1;
-  for (PetscInt s = 0; s < piece->preparation.num_steps; s++) {
-    if (!strcmp(piece->preparation.step[s].step, "largest"))
-      *num_pieces = (PetscInt)piece->preparation.step[s].count + 1;
-  }
+  *piece = (EqmIntake){.components = components, .piece = number};
+  PetscCall(EqmComponentsTake(components, number, &piece->given, &piece->begun));
+  piece->mapped = piece->given;
+  PetscCall(EqmIntakePrepareRest(&prepare, &piece->begun, piece));
+  PetscCall(EqmIntakeDiagnose(options->target, PETSC_FALSE, piece, &fatal, reason, length));
+  *can = (PetscBool)!fatal;
   end = strchr(reason, '\n');
   if (end) *end = '\0';
   if (!strncmp(reason, "error: ", 7)) memmove(reason, reason + 7, strlen(reason + 7) + 1);
@@ -56,9 +51,19 @@ PetscErrorCode EqmIntakeWithoutSplits(const EqmIntakeOptions *options, const Eqm
 {
   char text[4 * EQM_MESSAGE_MAX];
   EqmPrepareOptions prepare = EqmIntakePrepareOptions(options);
+  PetscBool fatal;
 
   PetscFunctionBegin;
   prepare.keeps_cells = PETSC_TRUE;
-  PetscCall(PrepareAnew(options->target, &prepare, intake, whole, can, text, sizeof(text)));
+  *whole = (EqmIntake){.given = intake->given,
+                       .mapped = intake->given,
+                       .components = intake->components,
+                       .piece = intake->piece};
+  if (intake->components)
+    PetscCall(EqmIntakePrepareRest(&prepare, &intake->begun, whole));
+  else
+    PetscCall(EqmIntakePrepare(&prepare, whole));
+  PetscCall(EqmIntakeDiagnose(options->target, PETSC_FALSE, whole, &fatal, text, sizeof(text)));
+  *can = (PetscBool)!fatal;
   PetscFunctionReturn(0);
 }

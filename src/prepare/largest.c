@@ -6,15 +6,10 @@
 #include "base/sort.h"
 #include "geometry/simplex.h"
 
-typedef struct {
-  PetscInt label; /* the lowest vertex of the piece */
-  PetscReal measure;
-} Piece;
-
 /* Larger first, then the one with the lower vertex. */
 static int ComparePieces(const void *a, const void *b)
 {
-  const Piece *const s = a, *const t = b;
+  const EqmFoundPiece *const s = a, *const t = b;
 
   if (s->measure != t->measure) return s->measure > t->measure ? -1 : 1;
   return (s->label > t->label) - (s->label < t->label);
@@ -42,12 +37,12 @@ static PetscErrorCode MeasurePieces(const EqmVicinity *vicinity, const PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* The pieces in their order, on every rank: a list as long as there are pieces. */
-static PetscErrorCode ListPieces(const EqmVicinity *vicinity, const PetscInt *label, PetscInt *num_pieces, Piece **all)
+PetscErrorCode EqmListPieces(const EqmVicinity *vicinity, const PetscInt *label, PetscInt *num_pieces,
+                             EqmFoundPiece **all)
 {
   PetscInt count = 0;
   PetscReal *measure;
-  Piece *mine;
+  EqmFoundPiece *mine;
   PetscMPIInt *counts, *starts;
 
   PetscFunctionBegin;
@@ -60,11 +55,12 @@ static PetscErrorCode ListPieces(const EqmVicinity *vicinity, const PetscInt *la
     mine[count].label = label[v];
     mine[count++].measure = measure[v];
   }
-  PetscCall(EqmGatherCounts(vicinity->comm, count * (PetscInt64)sizeof(Piece), "bytes about pieces", counts, starts));
-  *num_pieces = starts[vicinity->size] / (PetscInt)sizeof(Piece);
+  PetscCall(
+      EqmGatherCounts(vicinity->comm, count * (PetscInt64)sizeof(EqmFoundPiece), "bytes about pieces", counts, starts));
+  *num_pieces = starts[vicinity->size] / (PetscInt)sizeof(EqmFoundPiece);
   PetscCall(PetscMalloc1(*num_pieces, all));
   PetscCallMPI(MPI_Allgatherv(mine, counts[vicinity->rank], MPI_BYTE, *all, counts, starts, MPI_BYTE, vicinity->comm));
-  EqmSort(*all, (size_t)*num_pieces, sizeof(Piece), ComparePieces);
+  EqmSort(*all, (size_t)*num_pieces, sizeof(EqmFoundPiece), ComparePieces);
   PetscCall(PetscFree2(measure, mine));
   PetscCall(PetscFree2(counts, starts));
   PetscFunctionReturn(0);
@@ -100,19 +96,19 @@ PetscErrorCode EqmStepLargest(const EqmPrepareOptions *options, EqmChange *chang
   PetscInt *label, num_pieces;
   PetscInt64 left_out = 0;
   PetscReal kept, total = 0.;
-  Piece *pieces;
+  EqmFoundPiece *pieces;
 
   PetscFunctionBegin;
   PetscCall(EqmVicinityCreate(change->soup, &vicinity));
   PetscCall(PetscMalloc1(vicinity.num_local, &label));
   PetscCall(EqmVicinityLabelComponents(&vicinity, label));
-  PetscCall(ListPieces(&vicinity, label, &num_pieces, &pieces));
+  PetscCall(EqmListPieces(&vicinity, label, &num_pieces, &pieces));
   if (options->piece > num_pieces && num_pieces) {
     EqmFail(vicinity.comm, EQM_ERR_USAGE, "-piece %" PetscInt_FMT ": there are only %" PetscInt_FMT " pieces",
             options->piece, num_pieces);
   }
   if (num_pieces > 1) {
-    const Piece *const piece = &pieces[options->piece - 1];
+    const EqmFoundPiece *const piece = &pieces[options->piece - 1];
 
     for (PetscInt k = 0; k < num_pieces; k++) total += pieces[k].measure;
     kept = piece->measure;

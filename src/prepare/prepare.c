@@ -1,5 +1,6 @@
 /* The table of steps, and the loop over them. */
 #include "prepare/step.h"
+#include "prepare/components.h"
 #include "mesh/soup_private.h"
 #include "base/rows.h"
 #include <string.h>
@@ -168,23 +169,39 @@ static PetscErrorCode IsReady(EqmSoup soup, const char *target, PetscBool *ready
   PetscFunctionReturn(0);
 }
 
-/* The steps of the list one after the other; `weld` is left out if `without_weld`. */
-static PetscErrorCode RunSteps(EqmSoup given, const EqmPrepareOptions *options, PetscBool automatic,
-                               PetscBool without_weld, EqmPreparation *preparation)
+/* Steps first .. last - 1 of those of the list, one after the other; `weld` is left out if `without_weld`. */
+static PetscErrorCode RunSteps(PetscInt num_given, const EqmPrepareOptions *options, PetscBool automatic,
+                               PetscBool without_weld, PetscInt first, PetscInt last, EqmPreparation *preparation)
 {
-  const PetscInt num_given = given->vertex_end - given->vertex_start;
+  PetscFunctionBegin;
+  for (PetscInt s = first; s < last; s++) {
+    if (without_weld && steps[s].run == EqmStepWeld) continue;
+    if (automatic || IsListed(options->steps, steps[s].name))
+      PetscCall(RunStep(&steps[s], options, num_given, preparation));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The repair at the end. */
+static PetscErrorCode RunRepair(PetscInt num_given, const EqmPrepareOptions *options, PetscBool automatic,
+                                EqmPreparation *preparation)
+{
   static const EqmPrepareStep repair = {"repair", NULL, EqmStepRepair};
 
   PetscFunctionBegin;
-  PetscCall(Begin(given, preparation));
-  for (PetscInt s = 0; s < NUM_STEPS; s++) {
-    if (without_weld && steps[s].run == EqmStepWeld) continue;
-    if (!automatic && !IsListed(options->steps, steps[s].name) &&
-        !(options->each_piece && steps[s].run == EqmStepLargest))
-      continue;
-    PetscCall(RunStep(&steps[s], options, num_given, preparation));
-  }
   if (options->repair || automatic) PetscCall(RunStep(&repair, options, num_given, preparation));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunAll(EqmSoup given, const EqmPrepareOptions *options, PetscBool automatic,
+                             PetscBool without_weld, EqmPreparation *preparation)
+{
+  const PetscInt num_given = given->vertex_end - given->vertex_start;
+
+  PetscFunctionBegin;
+  PetscCall(Begin(given, preparation));
+  PetscCall(RunSteps(num_given, options, automatic, without_weld, 0, NUM_STEPS, preparation));
+  PetscCall(RunRepair(num_given, options, automatic, preparation));
   PetscFunctionReturn(0);
 }
 
@@ -194,15 +211,64 @@ PetscErrorCode EqmSoupPrepare(EqmSoup given, const EqmPrepareOptions *options, E
 
   PetscFunctionBegin;
   if (automatic) PetscCall(IsReady(given, options->target, &ready));
-  PetscCall(RunSteps(given, options, (PetscBool)(automatic && !ready), options->without_weld, preparation));
-  if (!automatic || ready || options->each_piece || !preparation->num_steps ||
-      strcmp(preparation->step[0].step, "weld"))
+  PetscCall(RunAll(given, options, (PetscBool)(automatic && !ready), PETSC_FALSE, preparation));
+  if (!automatic || ready || !preparation->num_steps || strcmp(preparation->step[0].step, "weld"))
     PetscFunctionReturn(0);
   /* a seam may be the cut that makes a surface a disk: if the mesh is refused after welding, skip it */
   PetscCall(IsReady(preparation->soup, options->target, &ready));
   if (ready) PetscFunctionReturn(0);
   PetscCall(EqmPreparationReset(preparation));
-  PetscCall(RunSteps(given, options, PETSC_TRUE, PETSC_TRUE, preparation));
+  PetscCall(RunAll(given, options, PETSC_TRUE, PETSC_TRUE, preparation));
+  PetscFunctionReturn(0);
+}
+
+/* Which of the steps it is. */
+static PetscInt PlaceOfLargest(void)
+{
+  PetscInt s = 0;
+
+  while (steps[s].run != EqmStepLargest) s++;
+  return s;
+}
+
+PetscErrorCode EqmPrepareShared(EqmSoup given, const EqmPrepareOptions *options, PetscBool *automatic,
+                                EqmPreparation *preparation)
+{
+  PetscBool ready = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  *automatic = (PetscBool)!strcmp(options->steps, "auto");
+  if (*automatic) PetscCall(IsReady(given, options->target, &ready));
+  if (ready) *automatic = PETSC_FALSE;
+  PetscCall(Begin(given, preparation));
+  PetscCall(RunSteps(given->vertex_end - given->vertex_start, options, *automatic, options->without_weld, 0,
+                     PlaceOfLargest(), preparation));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmPrepareRest(EqmSoup given, const EqmPrepareOptions *options, PetscBool automatic,
+                              EqmPreparation *preparation)
+{
+  const PetscInt num_given = given->vertex_end - given->vertex_start;
+
+  PetscFunctionBegin;
+  PetscCall(RunSteps(num_given, options, automatic, PETSC_FALSE, PlaceOfLargest() + 1, NUM_STEPS, preparation));
+  PetscCall(RunRepair(num_given, options, automatic, preparation));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmPreparationCopy(EqmSoup given, const EqmPreparation *from, EqmPreparation *to)
+{
+  const PetscInt num_cells = from->soup->cell_end - from->soup->cell_start;
+  const PetscInt num_vertices = given->vertex_end - given->vertex_start;
+
+  PetscFunctionBegin;
+  *to = (EqmPreparation){.is_changed = from->is_changed};
+  PetscCall(EqmSoupCopy(from->soup, &to->soup));
+  PetscCall(PetscMalloc1(num_cells, &to->parent));
+  PetscCall(PetscArraycpy(to->parent, from->parent, num_cells));
+  PetscCall(PetscMalloc1(num_vertices, &to->vertex));
+  PetscCall(PetscArraycpy(to->vertex, from->vertex, num_vertices));
   PetscFunctionReturn(0);
 }
 

@@ -10,9 +10,7 @@ typedef struct {
   char steps[256];          /* "none"; "auto": all steps and EqmSoupRepair if the target does not take the mesh
                                as it is; or steps, separated by commas */
   PetscInt piece;           /* of `largest`: which piece to keep, 1 is the largest */
-  PetscBool each_piece;     /* the piece is one of all that are prepared one after the other: `largest` is among the
-                               steps, and what comes before it is the same for all */
-  PetscBool without_weld;   /* no `weld`, although the list is auto */
+  PetscBool without_weld;   /* EqmPrepareShared: no `weld`, although it is among the steps */
   PetscReal hole_weight;    /* of `holes`: density of the cells that fill holes */
   PetscReal weld_tolerance; /* of `weld`: distance, as a share of the mesh's diameter */
   PetscReal handle_length;  /* of `handles`: loops up to this length, as a share of the mesh's diameter, are cut */
@@ -50,6 +48,8 @@ PETSC_INTERN PetscErrorCode EqmPrepareSetFromOptions(PetscOptionItems *PetscOpti
    something was changed; free it with EqmPreparationReset. Errors: EQM_ERR_USAGE (a piece that is not there). */
 PETSC_INTERN PetscErrorCode EqmSoupPrepare(EqmSoup given, const EqmPrepareOptions *options,
                                            EqmPreparation *preparation);
+/* A copy of its own of the mesh and the numberings, without the steps. Collective. */
+PETSC_INTERN PetscErrorCode EqmPreparationCopy(EqmSoup given, const EqmPreparation *from, EqmPreparation *to);
 /* Collective. */
 PETSC_INTERN PetscErrorCode EqmPreparationReset(EqmPreparation *preparation);
 /* The steps in one line: "weld: ..., holes: ...". Not collective. */

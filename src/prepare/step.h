@@ -41,6 +41,17 @@ PETSC_INTERN PetscErrorCode EqmChangeWeighAdded(EqmChange *change, PetscReal wei
 PETSC_INTERN PetscErrorCode EqmFillCavities(const EqmPrepareOptions *options, EqmChange *change,
                                             EqmPreparedStep *report);
 
+/* A piece of a mesh. */
+typedef struct {
+  PetscInt label; /* its lowest vertex */
+  PetscReal measure;
+} EqmFoundPiece;
+
+/* The pieces that EqmVicinityLabelComponents has labelled, the largest first, on every rank: a list as long as there
+   are pieces, to be freed with PetscFree. Collective. */
+PETSC_INTERN PetscErrorCode EqmListPieces(const EqmVicinity *vicinity, const PetscInt *label, PetscInt *num_pieces,
+                                          EqmFoundPiece **all);
+
 /* A boundary edge with its position, surface on its left. */
 typedef struct {
   PetscInt tail, head;

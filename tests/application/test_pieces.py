@@ -100,6 +100,8 @@ def check_refusals(program):
     for arguments, code, words in (
         (("disk", "eggs.obj"), 3, "none of its 2 pieces"),
         (("disk", "scene.obj", "-history", "x.csv"), 2, "no -history"),
+        (("disk", "scene.obj", "-start", "./scene.obj"), 2, "no -start FILE"),
+        (("square", "scene.obj", "-corners", "0,1,2,3"), 2, "no -corners"),
         (("disk", "scene.obj", "-checkpoint", "x.chk"), 2, "no -checkpoint"),
         (("sphere", "eggs.obj", "-uv", "x.obj"), 2, "side by side"),
         (("disk", "scene.obj", "-pieces", "all"), 2, "-pieces"),
