@@ -3,10 +3,16 @@
 #include "base/rows.h"
 #include "mesh/mesh_private.h"
 
-/* The mesh as a source of level 0; `part` and `halo` are new. */
-static PetscErrorCode FromMesh(EqmMesh mesh, const PetscBool *corner, EqmSharedSource *source, unsigned char **part)
+/* The mesh as a source of level 0; `part` and `place` are new. */
+static PetscErrorCode FromMesh(EqmMesh mesh, const PetscBool *corner, EqmSharedSource *source, unsigned char **part,
+                               PetscInt **place)
 {
+  PetscInt end;
+
   PetscFunctionBegin;
+  PetscCallMPI(MPI_Scan(&mesh->num_owned_cells, &end, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscCall(PetscMalloc1(mesh->num_owned_cells, place));
+  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) (*place)[c] = end - mesh->num_owned_cells + c;
   PetscCall(PetscMalloc1(mesh->num_owned, part));
   for (PetscInt v = 0; v < mesh->num_owned; v++)
     (*part)[v] = !mesh->on_boundary[v] ? EQM_INSIDE : corner && corner[v] ? EQM_CORNER : EQM_ON_BOUNDARY;
@@ -20,7 +26,8 @@ static PetscErrorCode FromMesh(EqmMesh mesh, const PetscBool *corner, EqmSharedS
                               .part = *part,
                               .num_cells = mesh->num_owned_cells,
                               .cells = mesh->cells,
-                              .weight = mesh->weight};
+                              .weight = mesh->weight,
+                              .place = *place};
   PetscFunctionReturn(0);
 }
 
@@ -96,15 +103,17 @@ PetscErrorCode EqmSharedCreate(EqmMesh mesh, const EqmHierarchyOptions *options,
   const PetscReal little_progress = .8;
   EqmSharedSource source;
   unsigned char *part;
+  PetscInt *place;
   EqmShared shared;
 
   PetscFunctionBegin;
   PetscCheck(mesh->cell_size == 3, mesh->comm, EQM_ERR_USAGE, "a hierarchy is of a surface, not of a solid");
   PetscCall(PetscNew(&shared));
   shared->comm = mesh->comm;
-  PetscCall(FromMesh(mesh, options->corner, &source, &part));
+  PetscCall(FromMesh(mesh, options->corner, &source, &part, &place));
   PetscCall(EqmSharedLevelCreate(&source, 0, options->vertices_of_piece, &shared->level[0]));
   PetscCall(PetscFree(part));
+  PetscCall(PetscFree(place));
   PetscCall(BoundWeights(&shared->level[0]));
   for (shared->num_levels = 1; shared->num_levels < EQM_MOST_LEVELS; shared->num_levels++) {
     EqmSharedLevel *const level = &shared->level[shared->num_levels];
@@ -138,6 +147,7 @@ PetscErrorCode EqmSharedMemory(EqmShared shared, PetscInt64 *bytes)
     const EqmSharedLevel *const here = &shared->level[k];
     *bytes += EqmLevelMemory(&here->level);
     *bytes += (PetscInt64)sizeof(PetscInt) * (here->level.num_vertices - here->num_owned);
+    if (here->cell_order) *bytes += (PetscInt64)sizeof(PetscInt) * here->level.num_cells;
     *bytes += (PetscInt64)(sizeof(PetscSFNode) + sizeof(PetscInt)) * here->level.num_vertices; /* the star forests */
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bytes, 1, MPIU_INT64, MPI_SUM, shared->comm));

@@ -23,6 +23,8 @@ typedef struct {
      so that those come first whose lowest corner another rank owns, and which are that rank's. */
   EqmHierarchyLevel level;
   PetscInt num_foreign_cells;
+  PetscInt *cell_order; /* of the finest level: place of each cell among the mesh's owned cells of all ranks, one rank's
+                           after the other; else NULL */
 
   /* Pieces: per piece of this rank the first vertex, the first cell that has its lowest corner there, the first
      collapse; and where the last one ends. */
@@ -59,6 +61,7 @@ typedef struct {
   const char *dead;          /* per cell, or NULL */
   const PetscInt *cells;     /* local numbers */
   const PetscReal *weight;
+  const PetscInt *place; /* per cell: becomes the level's cell_order; or NULL */
 } EqmSharedSource;
 /* `where`: which of the curves. `vertices_of_piece`: about so many. Collective. */
 PETSC_INTERN PetscErrorCode EqmSharedLevelCreate(const EqmSharedSource *source, PetscInt where,

@@ -5,9 +5,9 @@
 #include "base/sort.h"
 #include <stdlib.h>
 
-/* A cell on its way: its corners' numbers along the curve. */
+/* A cell on its way: its corners' numbers along the curve; where it comes from. */
 typedef struct {
-  PetscInt corner[3];
+  PetscInt corner[3], place;
   PetscReal weight;
 } Cell;
 
@@ -47,6 +47,7 @@ static PetscErrorCode SendCells(const EqmSharedSource *source, const PetscInt *n
         if (pass == 1) {
           to[sent] = owner[a];
           cell[sent].weight = source->weight[c];
+          cell[sent].place = source->place ? source->place[c] : -1;
           for (PetscInt b = 0; b < 3; b++) cell[sent].corner[b] = number[source->cells[3 * c + b]];
         }
         sent++;
@@ -129,6 +130,15 @@ static PetscErrorCode FindGhosts(EqmSharedLevel *to, PetscInt num, const Cell *c
   PetscFunctionReturn(0);
 }
 
+/* Where the cells come from. */
+static PetscErrorCode TakeOrder(EqmSharedLevel *to, PetscInt num, const Cell *cells)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(num, &to->cell_order));
+  for (PetscInt c = 0; c < num; c++) to->cell_order[c] = cells[c].place;
+  PetscFunctionReturn(0);
+}
+
 /* Corners in local numbers. */
 static PetscErrorCode TakeCells(EqmSharedLevel *to, PetscInt num, const Cell *cells, const PetscInt *begin)
 {
@@ -199,6 +209,7 @@ PetscErrorCode EqmSharedLevelCreate(const EqmSharedSource *source, PetscInt wher
   PetscCall(SortCells(to, num, cells, &begin));
   PetscCall(FindGhosts(to, num, cells));
   PetscCall(TakeCells(to, num, cells, begin));
+  if (source->place) PetscCall(TakeOrder(to, num, cells));
   PetscCall(PetscFree(cells));
   PetscCall(PetscFree(begin));
   PetscCall(TakeVertices(source, to));
@@ -210,6 +221,7 @@ PetscErrorCode EqmSharedLevelDestroy(EqmSharedLevel *level)
   PetscFunctionBegin;
   PetscCall(EqmLevelReset(&level->level));
   PetscCall(PetscFree(level->ghost));
+  PetscCall(PetscFree(level->cell_order));
   PetscCall(PetscFree(level->vertex_start));
   PetscCall(PetscFree(level->cell_start));
   PetscCall(PetscFree(level->record_start));

@@ -3,6 +3,7 @@
    surfaces with one or two unknowns per vertex. The first rank has the levels; the others send their cells' matrices
    and right-hand sides. */
 #include "linalg/onlevels.h"
+#include "linalg/levelcells.h"
 #include "linalg/levelrows.h"
 #include "base/quiet.h"
 #include "base/rows.h"
@@ -11,17 +12,17 @@
 typedef struct {
   EqmHierarchy hierarchy;
   EqmCascadeTarget target;
-  PetscSF vertices, cells; /* roots: owned vertices, owned cells; leaves: the finest level's */
-  PetscInt dim;            /* of places; 0 before there are any */
-  PetscInt below;          /* coarser levels that cycles have */
+  PetscSF vertices; /* roots: owned vertices; leaves: the finest level's */
+  EqmLevelCells cells;
+  PetscInt dim;   /* of places; 0 before there are any */
+  PetscInt below; /* coarser levels that cycles have */
   EqmLevelMap map[EQM_MOST_LEVELS];
   EqmProlongation prolongation[EQM_MOST_LEVELS];
   PetscBool has_prolongations;
   PetscReal *frame;
   EqmLevelSystem system;
   EqmCycle cycle;
-  PetscReal *owned;  /* two per owned vertex */
-  PetscReal *packed; /* several ranks: matrices of the finest level's cells, during a filling */
+  PetscReal *owned; /* two per owned vertex */
 } OnLevels;
 
 /* What the first rank does while the others wait. Collective. */
@@ -95,65 +96,14 @@ static PetscErrorCode SetImage(EqmLinear linear, PetscInt dim, const PetscReal *
 
 /* ---- the matrix */
 
-/* How many unknowns the corners of a cell have. */
-static PetscInt SizeOfCell(const unsigned char *count, const PetscInt *v)
-{
-  return count[v[0]] + count[v[1]] + count[v[2]];
-}
-
-/* The owned cells' matrices to the first rank. */
-static PetscErrorCode SendCells(EqmLinear linear)
-{
-  OnLevels *const on = linear->data;
-  const EqmMesh mesh = linear->mesh;
-  PetscReal *mine;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(mesh->rank == 0 ? (size_t)EQM_PACKED_TRIANGLE * mesh->num_cells : 0, &on->packed));
-  PetscCall(PetscCalloc1((size_t)EQM_PACKED_TRIANGLE * mesh->num_owned_cells, &mine));
-#pragma omp parallel for schedule(static)
-  for (PetscInt c = 0; c < mesh->num_owned_cells; c++) {
-    PetscReal matrix[EQM_MOST_TRIANGLE_SIZE * EQM_MOST_TRIANGLE_SIZE];
-    linear->cell_matrix(linear->context, c, matrix);
-    EqmTrianglePack(SizeOfCell(linear->unknowns.count, mesh->cells + 3 * c), matrix,
-                    mine + (size_t)EQM_PACKED_TRIANGLE * c);
-  }
-  PetscCall(EqmRowsToLeaves(on->cells, EQM_PACKED_TRIANGLE, mine, on->packed));
-  PetscCall(PetscFree(mine));
-  PetscFunctionReturn(0);
-}
-
-static void AssemblePiece(EqmLinear linear, PetscInt piece)
-{
-  static const PetscReal nothing[EQM_MOST_TRIANGLE_SIZE] = {0., 0., 0., 0., 0., 0.};
-  OnLevels *const on = linear->data;
-  const EqmLevelPieces *const pieces = &on->system.cells;
-
-  for (PetscInt q = pieces->start[piece]; q < pieces->start[piece + 1]; q++) {
-    const PetscInt c = pieces->item[q];
-    PetscReal matrix[EQM_MOST_TRIANGLE_SIZE * EQM_MOST_TRIANGLE_SIZE];
-    if (on->packed)
-      EqmTriangleUnpack(SizeOfCell(on->system.count, on->system.level->cells + 3 * c),
-                        on->packed + (size_t)EQM_PACKED_TRIANGLE * c, matrix);
-    else
-      linear->cell_matrix(linear->context, on->hierarchy->cell_order[c], matrix);
-    EqmLevelSystemAdd(&on->system, c, matrix, nothing);
-  }
-}
-
 /* Matrices of all levels, from the cells'. */
 static PetscErrorCode MakeCycle(EqmLinear linear, void *context)
 {
   OnLevels *const on = linear->data;
-  const EqmLevelPieces *const pieces = &on->system.cells;
   PetscBool *const success = context;
 
   PetscFunctionBegin;
-  PetscCall(EqmLevelSystemClear(&on->system));
-#pragma omp parallel for schedule(dynamic) if (pieces->count > 1)
-  for (PetscInt k = 0; k < pieces->count; k++) AssemblePiece(linear, k);
-  AssemblePiece(linear, pieces->count); /* the cells between pieces */
-  PetscCall(EqmLevelSystemEnd(&on->system, linear->diagonal_factor - 1., success));
+  PetscCall(EqmLevelCellsAssemble(linear, &on->cells, &on->system, success));
   if (*success) PetscCall(EqmCycleFill(on->cycle, success));
   PetscFunctionReturn(0);
 }
@@ -164,9 +114,8 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
 
   PetscFunctionBegin;
   PetscCheck(on->dim > 0, linear->mesh->comm, PETSC_ERR_ARG_WRONGSTATE, "no places of the map are known yet");
-  if (linear->mesh->size > 1) PetscCall(SendCells(linear));
+  PetscCall(EqmLevelCellsSend(linear, &on->cells));
   PetscCall(OnFirstRank(linear, MakeCycle, success));
-  PetscCall(PetscFree(on->packed));
   PetscCallMPI(MPI_Bcast(success, 1, MPIU_BOOL, 0, linear->mesh->comm));
   PetscFunctionReturn(0);
 }
@@ -225,7 +174,7 @@ static PetscErrorCode Destroy(EqmLinear linear)
     PetscCall(EqmLevelSystemDestroy(&on->system));
   }
   PetscCall(PetscSFDestroy(&on->vertices));
-  PetscCall(PetscSFDestroy(&on->cells));
+  PetscCall(EqmLevelCellsDestroy(&on->cells));
   PetscCall(PetscFree(on->frame));
   PetscCall(PetscFree(on->owned));
   PetscCall(PetscFree(linear->data));
@@ -254,7 +203,7 @@ static PetscErrorCode SetUp(EqmLinear linear)
 
   PetscFunctionBegin;
   PetscCall(EqmRowsCreateSF(mesh->comm, mesh->num_owned, n, on->hierarchy->order, &on->vertices));
-  PetscCall(EqmRowsCreateSF(mesh->comm, mesh->num_owned_cells, m, on->hierarchy->cell_order, &on->cells));
+  PetscCall(EqmLevelCellsCreate(mesh, m, on->hierarchy->cell_order, &on->cells));
   PetscCall(PetscMalloc1(2 * mesh->num_owned, &on->owned));
   PetscCall(PetscMalloc1(n, &count));
   PetscCall(EqmFetchRows(mesh->comm, mesh->num_owned, n, on->hierarchy->order, MPI_UNSIGNED_CHAR, 1,

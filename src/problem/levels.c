@@ -1,11 +1,9 @@
 #include "problem/levels.h"
 #include "hierarchy/sharedcascade.h"
 #include "linalg/onlevels.h"
+#include "linalg/onshared.h"
 #include "domain/domain_private.h"
 #include "mesh/mesh_private.h"
-
-/* Linear solvers have all levels on the first rank: from several ranks no larger mesh. */
-static const PetscInt most_for_linear = 1000000;
 
 static EqmCascadeTarget TargetOf(EqmDomain domain)
 {
@@ -22,8 +20,6 @@ const char *EqmLevelsObstacle(EqmProblem problem)
 const char *EqmLevelsObstacleToLinear(EqmProblem problem)
 {
   if (problem->mesh->cell_size != 3) return "is for surfaces";
-  if (problem->mesh->size > 1 && problem->mesh->num_vertices > most_for_linear)
-    return "works on one rank, and from several for up to a million vertices";
   return EqmLevelsObstacle(problem);
 }
 
@@ -41,8 +37,7 @@ static PetscErrorCode MakeOptions(EqmProblem problem, EqmHierarchyOptions *optio
   PetscFunctionReturn(0);
 }
 
-/* `all_on_first`, for a linear solver: however large the mesh is, all levels are on the first rank. Collective. */
-static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLevels **levels)
+static PetscErrorCode Create(EqmProblem problem, EqmLevels **levels)
 {
   EqmHierarchyOptions options;
   PetscBool *corner;
@@ -51,7 +46,7 @@ static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLeve
   PetscCall(PetscNew(levels));
   **levels = (EqmLevels){.problem = problem, .target = TargetOf(problem->domain)};
   PetscCall(MakeOptions(problem, &options, &corner));
-  if (all_on_first || problem->mesh->num_vertices <= options.gathered)
+  if (problem->mesh->num_vertices <= options.gathered)
     PetscCall(EqmHierarchyCreate(problem->mesh, &options, &(*levels)->hierarchy));
   else
     PetscCall(EqmSharedCreate(problem->mesh, &options, &(*levels)->shared));
@@ -61,13 +56,8 @@ static PetscErrorCode Create(EqmProblem problem, PetscBool all_on_first, EqmLeve
 
 PetscErrorCode EqmProblemGetLevels(EqmProblem problem, EqmLevels **levels)
 {
-  EqmSolverKind kind;
-
   PetscFunctionBegin;
-  PetscCall(EqmLinearWantedKind(&kind));
-  if (!problem->levels)
-    PetscCall(Create(problem, (PetscBool)(kind == EQM_SOLVER_HIERARCHY && EqmLevelsObstacleToLinear(problem) == NULL),
-                     &problem->levels));
+  if (!problem->levels) PetscCall(Create(problem, &problem->levels));
   *levels = problem->levels;
   PetscFunctionReturn(0);
 }
@@ -93,7 +83,10 @@ PetscErrorCode EqmProblemCreateLinearOnLevels(EqmProblem problem, EqmLinear *lin
   PetscCall(EqmLinearDestroy(&problem->scalar));
   PetscCall(PetscFree(problem->scalar_count));
   PetscCall(EqmProblemGetLevels(problem, &levels));
-  PetscCall(EqmLinearCreateOnLevels(problem->mesh, &unknowns, levels->hierarchy, levels->target, linear));
+  if (levels->shared)
+    PetscCall(EqmLinearCreateOnShared(problem->mesh, &unknowns, levels->shared, levels->target, linear));
+  else
+    PetscCall(EqmLinearCreateOnLevels(problem->mesh, &unknowns, levels->hierarchy, levels->target, linear));
   PetscCall(EqmLinearDescribe(*linear, problem->linear_solver, sizeof(problem->linear_solver)));
   PetscFunctionReturn(0);
 }

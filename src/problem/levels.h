@@ -5,8 +5,7 @@
 #include "hierarchy/relaxer.h"
 #include "problem/problem.h"
 
-/* One of the two: on the first rank, for small meshes and with -linear_solver hierarchy; or the finest levels on all
-   ranks. */
+/* One of the two: all levels on the first rank, for small meshes; or the finest levels on all ranks. */
 typedef struct EqmLevels {
   EqmProblem problem;
   EqmCascadeTarget target;
@@ -20,8 +19,7 @@ PETSC_INTERN const char *EqmLevelsObstacle(EqmProblem problem);
 PETSC_INTERN const char *EqmLevelsObstacleToLinear(EqmProblem problem);
 /* The problem's levels, made at the first need; corners of the square stay on all of them. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemGetLevels(EqmProblem problem, EqmLevels **levels);
-/* A solver of kind hierarchy, which the options must want, on the problem's levels for the domain's degrees of freedom.
- * Collective. */
+/* A solver of kind hierarchy, on the problem's levels, for the domain's degrees of freedom. Collective. */
 PETSC_INTERN PetscErrorCode EqmProblemCreateLinearOnLevels(EqmProblem problem, EqmLinear *linear);
 /* EqmCascade on them: boundary vertices of the place, which is set, ghosts included, are set on entry; frames are not
    chosen anew. Collective. */

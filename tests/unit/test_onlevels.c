@@ -1,8 +1,8 @@
-/* -linear_solver hierarchy: solutions are those of a factor, on any number of ranks; cycles are few, and hardly more on
-   a mesh four times as large. */
+/* -linear_solver hierarchy: solutions are those of a factor, on any number of ranks, with the levels on the first of
+   them or shared; cycles are few, and hardly more on a mesh four times as large. */
 #include "support/testing.h"
 #include "energy/cellframe.h"
-#include "linalg/onlevels.h"
+#include "linalg/onshared.h"
 #include "problem/levels.h"
 #include "problem/objective.h"
 
@@ -12,6 +12,7 @@ typedef struct {
   EqmProblem problem;
   EqmPlace place;
   PetscReal damping;
+  EqmShared shared; /* or NULL: the levels are the problem's */
 } Case;
 
 static PetscErrorCode CaseCreate(const char *shape, PetscInt n, const char *target, Case *test)
@@ -38,9 +39,37 @@ static PetscErrorCode CaseCreate(const char *shape, PetscInt n, const char *targ
 static PetscErrorCode CaseDestroy(Case *test)
 {
   PetscFunctionBegin;
+  PetscCall(EqmSharedDestroy(&test->shared));
   PetscCall(EqmPlaceDestroy(&test->place));
   PetscCall(EqmProblemDestroy(&test->problem));
   PetscCall(TestMeshDestroy(&test->mesh));
+  PetscFunctionReturn(0);
+}
+
+/* A solver on the problem's levels, which are on the first rank; or on levels of small pieces that all ranks share. */
+static PetscErrorCode CreateLinear(Case *test, PetscBool shared, EqmLinear *linear)
+{
+  const EqmUnknowns unknowns = EqmDomainUnknowns(test->problem->domain);
+  const EqmMesh mesh = test->problem->mesh;
+  EqmHierarchyOptions options;
+  EqmLevels *levels;
+  PetscBool *corner;
+
+  PetscFunctionBegin;
+  if (!shared) {
+    PetscCall(EqmProblemCreateLinearOnLevels(test->problem, linear));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(EqmProblemGetLevels(test->problem, &levels));
+  PetscCall(PetscMalloc1(mesh->num_local, &corner));
+  for (PetscInt v = 0; v < mesh->num_local; v++)
+    corner[v] = (PetscBool)(EqmDomainMotion(test->problem->domain, v) == &EqmMotionCorner);
+  PetscCall(EqmHierarchyOptionsDefault(&options));
+  options.corner = corner;
+  options.gathered = options.vertices_of_piece = 300;
+  PetscCall(EqmSharedCreate(mesh, &options, &test->shared));
+  PetscCall(PetscFree(corner));
+  PetscCall(EqmLinearCreateOnShared(mesh, &unknowns, test->shared, levels->target, linear));
   PetscFunctionReturn(0);
 }
 
@@ -120,7 +149,7 @@ static PetscErrorCode Solve(const Case *test, EqmLinear linear, PetscReal tolera
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TestSolution(const char *shape, PetscInt n, const char *target, PetscInt64 most)
+static PetscErrorCode TestSolution(const char *shape, PetscInt n, const char *target, PetscBool shared, PetscInt64 most)
 {
   Case test = {.damping = 5e-3};
   PetscReal *b, *x, *direct, norm, difference;
@@ -136,7 +165,7 @@ static PetscErrorCode TestSolution(const char *shape, PetscInt n, const char *ta
   num_dofs = test.problem->domain->num_dofs;
   PetscCall(PetscMalloc3(num_dofs, &b, num_dofs, &x, num_dofs, &direct));
   PetscCall(MakeForce(&test, b));
-  PetscCall(EqmProblemCreateLinearOnLevels(test.problem, &linear));
+  PetscCall(CreateLinear(&test, shared, &linear));
   PetscCall(EqmProblemSetImage(test.problem, &test.place, linear));
   for (PetscInt pass = 0; pass < 2; pass++) { /* the second matrix takes the patterns of the first */
     PetscCall(EqmLinearFactor(linear, CellMatrix, &test, 1. + 1e-12, &success));
@@ -185,11 +214,14 @@ int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
   PetscCall(EqmInitialize(&argc, &argv));
-  PetscCall(TestSolution("hills", 2500, "disk", 11));
-  PetscCall(TestSolution("hills", 10000, "disk", 11));
-  PetscCall(TestSolution("patch", 2500, "square", 15));
-  PetscCall(TestSolution("head", 2500, "sphere", 7));
-  PetscCall(TestSolution("head", 10000, "sphere", 7));
+  PetscCall(TestSolution("hills", 2500, "disk", PETSC_FALSE, 11));
+  PetscCall(TestSolution("hills", 10000, "disk", PETSC_FALSE, 11));
+  PetscCall(TestSolution("hills", 2500, "disk", PETSC_TRUE, 13));
+  PetscCall(TestSolution("patch", 2500, "square", PETSC_FALSE, 15));
+  PetscCall(TestSolution("patch", 2500, "square", PETSC_TRUE, 17));
+  PetscCall(TestSolution("head", 2500, "sphere", PETSC_FALSE, 7));
+  PetscCall(TestSolution("head", 10000, "sphere", PETSC_FALSE, 7));
+  PetscCall(TestSolution("head", 2500, "sphere", PETSC_TRUE, 9));
   PetscCall(TestIndefinite());
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
