@@ -1,5 +1,6 @@
 """lm by cycles on a hierarchy of meshes: no factor, a map like that of a factor, the same bits after a restart and for any
-number of threads, the same result on other ranks; where cycles gain nothing, a factor; what it cannot do is refused.
+number of threads, the same result on other ranks, with levels that one rank has or all share; where cycles gain nothing, a
+factor; what it cannot do is refused.
 
 usage: python3 test_cycles.py EQUIMAP [RANKS]
 """
@@ -39,22 +40,32 @@ def check_maps(program):
         assert found["linear_solver"].startswith("hierarchy"), found["linear_solver"]
 
 
-def check_bits(program):
-    """A restart between two matrices that share their coarse motions; threads."""
-    run(program, "whole", *CYCLES, "-max_it", 4)
-    run(program, "begun", *CYCLES, "-max_it", 2, "-checkpoint", "c.h5", "-checkpoint_every", 2)
-    run(program, "gone-on", *CYCLES, "-max_it", 4, "-restart", "c.h5")
+def check_restart(program, mesh, half):
+    """Between two matrices that share their coarse motions. Returns what the whole run has found."""
+    whole = run(program, "whole", *CYCLES, "-max_it", 2 * half, mesh=mesh)
+    run(program, "begun", *CYCLES, "-max_it", half, "-checkpoint", "c.h5", "-checkpoint_every", half, mesh=mesh)
+    again = run(program, "gone-on", *CYCLES, "-max_it", 2 * half, "-restart", "c.h5", mesh=mesh)
     assert numpy.array_equal(coordinates(program, "gone-on"), coordinates(program, "whole")), "a restart changes bits"
-    assert json.loads(program.read("gone-on.json"))["work"] == json.loads(program.read("whole.json"))["work"]
-    run(program, "threads", *CYCLES, "-max_it", 4, "-threads", 2)
-    assert numpy.array_equal(coordinates(program, "threads"), coordinates(program, "whole")), "threads change bits"
+    assert again["work"] == whole["work"], (again["work"], whole["work"])
+    return whole
 
 
-def check_ranks(program):
-    other = run(program, "alone", *CYCLES, "-max_it", 4, ranks=1)
-    here = run(program, "here", *CYCLES, "-max_it", 4)
+def check_same(here, other):
     assert abs(here["energy"]["final"] - other["energy"]["final"]) < 1e-4 * other["energy"]["final"]
     assert here["work"] == other["work"], (here["work"], other["work"])
+
+
+def check_small(program):
+    """Levels that the first rank has."""
+    check_same(check_restart(program, "mesh.h5", 2), run(program, "alone", *CYCLES, "-max_it", 4, ranks=1))
+
+
+def check_shared(program):
+    """Levels that ranks and threads share."""
+    program.succeed("generate", "hills", "-n", 21000, "-o", "shared.h5", ranks=1)
+    check_same(check_restart(program, "shared.h5", 1), run(program, "alone", *CYCLES, "-max_it", 2, "-threads", 2, mesh="shared.h5", ranks=1))
+    if program.ranks == 1:
+        assert numpy.array_equal(coordinates(program, "alone"), coordinates(program, "whole")), "threads change bits"
 
 
 def check_fall_back(program):
@@ -90,10 +101,10 @@ def main():
         program = Program(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else 1, folder)
         program.succeed("generate", "hills", "-n", 3000, "-o", "mesh.h5", ranks=1)
         check_maps(program)
-        check_bits(program)
-        check_ranks(program)
-        check_fall_back(program)
+        check_small(program)
         check_refusals(program)
+        check_shared(program)
+        check_fall_back(program)
 
 
 if __name__ == "__main__":
