@@ -4,11 +4,11 @@
 #include "mesh/fields.h"
 #include "metadata.h"
 #include "polygon.h"
-#include "seam.h"
 #include "stream.h"
 #include "writers.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* A line `g name` where the group changes. */
 static void PrintGroup(EqmAtomicFile *file, EqmMeshStream *stream, const EqmField *group, PetscInt cell)
@@ -26,27 +26,38 @@ static void PrintGroup(EqmAtomicFile *file, EqmMeshStream *stream, const EqmFiel
 }
 
 /* How many triangles from `cell` on were cut from its face of the file. */
-static PetscInt CountOfFace(const EqmSerialMesh *mesh, const EqmField *polygon, PetscInt cell)
+static PetscInt CountOfFace(EqmMeshStream *stream, PetscInt polygon, PetscInt cell)
 {
   PetscInt count = 1;
+  PetscReal number;
 
-  if (!polygon) return 1;
-  while (cell + count < mesh->num_cells && count < EQM_MAX_POLYGON - 2 &&
-         polygon->values[cell + count] == polygon->values[cell])
+  if (polygon < 0) return 1;
+  number = *EqmStreamField(stream, polygon, cell);
+  while (cell + count < stream->mesh.num_cells && count < EQM_MAX_POLYGON - 2 &&
+         *EqmStreamField(stream, polygon, cell + count) == number)
     ++count;
   return count;
 }
 
+/* The rows of `count` cells, three numbers each. */
+static void CopyRows(EqmMeshStream *stream, PetscInt column, PetscInt first, PetscInt count, PetscInt *rows)
+{
+  for (PetscInt c = 0; c < count; ++c)
+    memcpy(rows + 3 * c, EqmColumnRow(&stream->columns[column], first + c), 3 * sizeof(PetscInt));
+}
+
 /* A face with its texture points, of which each belongs to one vertex: that of the file, where its triangles still make
    it up, else these. */
-static void PrintTexturedFaces(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmSeams *seams, PetscInt first,
-                               PetscInt count)
+static void PrintTexturedFaces(EqmAtomicFile *file, EqmMeshStream *stream, PetscInt first, PetscInt count)
 {
-  const PetscInt *const corner = seams->corner + 3 * (size_t)first, *const vertex = mesh->cells + 3 * (size_t)first;
-  PetscInt cycle[EQM_MAX_POLYGON];
-  const PetscBool whole = EqmPolygonOfTriangles(count, corner, cycle);
-  const PetscInt n = whole ? count + 2 : 3 * count;
+  PetscInt corner[3 * (EQM_MAX_POLYGON - 2)], vertex[3 * (EQM_MAX_POLYGON - 2)], cycle[EQM_MAX_POLYGON];
+  PetscBool whole;
+  PetscInt n;
 
+  CopyRows(stream, EQM_COLUMN_POINTS_OF_CELLS, first, count, corner);
+  CopyRows(stream, EQM_COLUMN_CELLS, first, count, vertex);
+  whole = EqmPolygonOfTriangles(count, corner, cycle);
+  n = whole ? count + 2 : 3 * count;
   for (PetscInt k = 0; k < n; ++k) {
     PetscInt place = k;
 
@@ -57,25 +68,21 @@ static void PrintTexturedFaces(EqmAtomicFile *file, const EqmSerialMesh *mesh, c
 }
 
 /* Texture points, one for each different pair of a vertex and a point, and faces that name both. */
-static PetscErrorCode WriteTexturedFaces(EqmAtomicFile *file, EqmMeshStream *stream, const EqmField *group)
+static void WriteTexturedFaces(EqmAtomicFile *file, EqmMeshStream *stream, const EqmField *group)
 {
-  const EqmSerialMesh *const mesh = &stream->mesh;
-  const EqmField *const polygon = EqmFieldPolygon(stream->fields, stream->num_fields);
-  EqmSeams seams;
+  const PetscInt polygon = EqmStreamIndexOf(stream, EqmFieldPolygon(stream->fields, stream->num_fields));
   PetscInt count;
 
-  EqmTry(EqmSeamsFind(mesh->num_vertices, mesh->num_cells, mesh->cells, mesh->texture, &seams));
-  for (PetscInt i = 0; i < seams.num; ++i) {
+  for (PetscInt i = 0; i < stream->mesh.num_vertices + stream->num_more; ++i) {
     EqmAtomicWrite(file, "vt ", 3);
-    EqmAtomicPrintReals(file, 2, seams.point + 2 * (size_t)i, ' ');
+    EqmAtomicPrintReals(file, 2, EqmStreamPoint(stream, i), ' ');
     EqmAtomicWrite(file, "\n", 1);
   }
-  for (PetscInt c = 0; c < mesh->num_cells; c += count) {
-    count = CountOfFace(mesh, polygon, c);
+  for (PetscInt c = 0; c < stream->mesh.num_cells; c += count) {
+    count = CountOfFace(stream, polygon, c);
     PrintGroup(file, stream, group, c);
-    PrintTexturedFaces(file, mesh, &seams, c, count);
+    PrintTexturedFaces(file, stream, c, count);
   }
-  return EqmSeamsReset(&seams);
 }
 
 /* Write an OBJ file. See EqmStreamWriter. */
@@ -89,8 +96,8 @@ PetscErrorCode EqmWriteObj(EqmAtomicFile *file, EqmMeshStream *stream, char *err
     EqmAtomicPrintReals(file, 3, EqmStreamVertex(stream, i), ' ');
     EqmAtomicWrite(file, "\n", 1);
   }
-  if (stream->mesh.texture) return WriteTexturedFaces(file, stream, group);
-  for (PetscInt i = 0; i < stream->mesh.num_cells; ++i) {
+  if (stream->has_texture) WriteTexturedFaces(file, stream, group);
+  for (PetscInt i = 0; i < stream->mesh.num_cells && !stream->has_texture; ++i) {
     const PetscInt *const cell = EqmStreamCell(stream, i);
 
     PrintGroup(file, stream, group, i);

@@ -4,7 +4,6 @@
 #include "writers.h"
 #include "input.h"
 #include "scalar.h"
-#include "seam.h"
 #include "stream.h"
 
 #include <string.h>
@@ -145,16 +144,6 @@ static void PrintHeader(EqmAtomicFile *file, const EqmSerialMesh *mesh, const Eq
   EqmAtomicPrint(file, "end_header\n");
 }
 
-static PetscErrorCode ChooseTexture(const EqmSerialMesh *mesh, EqmSeams *seams, Texture *texture)
-{
-  *seams = (EqmSeams){0};
-  *texture = TEXTURE_NONE;
-  if (!mesh->texture) return 0;
-  EqmTry(EqmSeamsFind(mesh->num_vertices, mesh->num_cells, mesh->cells, mesh->texture, seams));
-  *texture = seams->num == mesh->num_vertices ? TEXTURE_OF_VERTICES : TEXTURE_OF_CORNERS;
-  return 0;
-}
-
 static void WriteVertex(Sink to, const PetscReal x[3], const PetscReal *uv)
 {
   for (size_t k = 0; k < 3; ++k) PutDouble(to, x[k]);
@@ -177,21 +166,24 @@ PetscErrorCode EqmWritePly(EqmAtomicFile *file, EqmMeshStream *stream, char *err
 {
   const EqmSerialMesh *const mesh = &stream->mesh;
   const Sink to = SinkOf(file);
-  EqmSeams seams;
-  Texture texture;
+  const Texture texture = !stream->has_texture    ? TEXTURE_NONE
+                          : stream->num_more == 0 ? TEXTURE_OF_VERTICES
+                                                  : TEXTURE_OF_CORNERS;
 
   EqmTry(EqmRequireTriangles(mesh, "PLY", error, error_length));
-  EqmTry(ChooseTexture(mesh, &seams, &texture));
   PrintHeader(file, mesh, stream->fields, stream->num_fields, texture);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
-    WriteVertex(to, EqmStreamVertex(stream, i), texture == TEXTURE_OF_VERTICES ? seams.point + 2 * (size_t)i : NULL);
+    WriteVertex(to, EqmStreamVertex(stream, i), texture == TEXTURE_OF_VERTICES ? EqmStreamPoint(stream, i) : NULL);
     WriteFields(to, stream, PETSC_FALSE, i);
     EndRow(to);
   }
   for (PetscInt i = 0; i < mesh->num_cells; ++i) {
-    WriteFace(to, EqmStreamCell(stream, i), texture == TEXTURE_OF_CORNERS ? mesh->texture + 6 * (size_t)i : NULL);
+    const PetscReal *const uv =
+        texture == TEXTURE_OF_CORNERS ? EqmColumnRow(&stream->columns[EQM_COLUMN_TEXTURE], i) : NULL;
+
+    WriteFace(to, EqmStreamCell(stream, i), uv);
     WriteFields(to, stream, PETSC_TRUE, i);
     EndRow(to);
   }
-  return EqmSeamsReset(&seams);
+  return 0;
 }

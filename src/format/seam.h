@@ -17,4 +17,19 @@ PETSC_INTERN PetscErrorCode EqmSeamsFind(PetscInt num_vertices, PetscInt num_cel
                                          const PetscReal *texture, EqmSeams *seams);
 PETSC_INTERN PetscErrorCode EqmSeamsReset(EqmSeams *seams);
 
+/* The same where a surface lies in slabs on the ranks. Vertices have the numbers of the surface, what they have of
+   further points follows. */
+typedef struct {
+  PetscReal *point;    /* 2 per vertex of the slab: its first point, zero for vertices of no triangle */
+  PetscInt64 num_more; /* further points of all ranks */
+  PetscInt more_end;   /* those of this rank and lower ones */
+  PetscReal *more;     /* 2 per further point of this rank */
+  PetscInt *corner;    /* 3 per cell of the slab: numbers of the corners' points */
+} EqmSeamSlabs;
+
+/* EqmSeamsFindSlabs - cut a surface along the seams of its texture. texture - 6 per cell of the slab, two per corner.
+   Collective; EqmSeamSlabsReset must follow. */
+PETSC_INTERN PetscErrorCode EqmSeamsFindSlabs(EqmSoup soup, const PetscReal *texture, EqmSeamSlabs *seams);
+PETSC_INTERN PetscErrorCode EqmSeamSlabsReset(EqmSeamSlabs *seams);
+
 #endif

@@ -13,18 +13,18 @@ typedef struct {
   PetscInt column, first, count;
 } Request;
 
-static void SetColumn(EqmMeshStream *stream, PetscInt number, PetscBool on_cells, PetscInt width, size_t number_bytes,
-                      const void *slab)
+/* A column of `total` rows, of which `start`, if not NULL, says where they are. */
+static void SetColumn(EqmMeshStream *stream, PetscInt number, PetscInt total, const PetscInt *start, PetscInt width,
+                      size_t number_bytes, const void *slab)
 {
   EqmColumn *const column = &stream->columns[number];
-  const PetscInt total = on_cells ? stream->mesh.num_cells : stream->mesh.num_vertices;
 
   *column = (EqmColumn){.stream = stream,
                         .number = number,
                         .width = width,
                         .total = total,
                         .row_bytes = number_bytes * (size_t)width,
-                        .start = on_cells ? stream->cell_start : stream->vertex_start,
+                        .start = start,
                         .slab = slab,
                         .count = total,
                         .rows = slab};
@@ -34,27 +34,58 @@ static void SetColumn(EqmMeshStream *stream, PetscInt number, PetscBool on_cells
   }
 }
 
+/* The columns of a texture. */
+static void SetTexture(EqmMeshStream *stream, const PetscReal *texture, const PetscReal *points, const PetscReal *more,
+                       const PetscInt *corners)
+{
+  const PetscInt n = stream->mesh.num_vertices, m = stream->mesh.num_cells;
+
+  stream->has_texture = PETSC_TRUE;
+  SetColumn(stream, EQM_COLUMN_TEXTURE, m, stream->cell_start, 6, sizeof(PetscReal), texture);
+  SetColumn(stream, EQM_COLUMN_POINTS, n, stream->vertex_start, 2, sizeof(PetscReal), points);
+  SetColumn(stream, EQM_COLUMN_MORE_POINTS, stream->num_more, stream->more_start, 2, sizeof(PetscReal), more);
+  SetColumn(stream, EQM_COLUMN_POINTS_OF_CELLS, m, stream->cell_start, 3, sizeof(PetscInt), corners);
+}
+
 static PetscErrorCode SetColumns(EqmMeshStream *stream, const PetscReal *vertices, const PetscInt *cells)
 {
+  const PetscInt n = stream->mesh.num_vertices, m = stream->mesh.num_cells, size = stream->mesh.cell_size;
+
   stream->num_columns = EQM_COLUMN_FIELDS + stream->num_fields;
   EqmTry(PetscCalloc1(stream->num_columns, &stream->columns));
-  SetColumn(stream, EQM_COLUMN_VERTICES, PETSC_FALSE, 3, sizeof(PetscReal), vertices);
-  SetColumn(stream, EQM_COLUMN_CELLS, PETSC_TRUE, stream->mesh.cell_size, sizeof(PetscInt), cells);
-  SetColumn(stream, EQM_COLUMN_CORNERS, PETSC_TRUE, 3 * stream->mesh.cell_size, sizeof(float), stream->corner_points);
+  SetColumn(stream, EQM_COLUMN_VERTICES, n, stream->vertex_start, 3, sizeof(PetscReal), vertices);
+  SetColumn(stream, EQM_COLUMN_CELLS, m, stream->cell_start, size, sizeof(PetscInt), cells);
+  SetColumn(stream, EQM_COLUMN_CORNERS, m, stream->cell_start, 3 * size, sizeof(float), stream->corner_points);
   for (PetscInt f = 0; f < stream->num_fields; ++f) {
     const EqmField *const field = &stream->fields[f];
 
-    SetColumn(stream, EQM_COLUMN_FIELDS + f, field->on_cells, field->width, sizeof(PetscReal), field->values);
+    SetColumn(stream, EQM_COLUMN_FIELDS + f, field->on_cells ? m : n,
+              field->on_cells ? stream->cell_start : stream->vertex_start, field->width, sizeof(PetscReal),
+              field->values);
   }
   return 0;
 }
 
-PetscErrorCode EqmStreamOpenWhole(EqmMeshStream *stream, const EqmSerialMesh *mesh, const EqmField *fields,
-                                  PetscInt num_fields)
+/* The columns of a texture that one rank has. */
+static PetscErrorCode OpenWholeTexture(EqmMeshStream *stream, const PetscInt *cells, const PetscReal *texture)
+{
+  const PetscInt n = stream->mesh.num_vertices;
+  EqmSeams *const seams = &stream->whole;
+
+  EqmTry(EqmSeamsFind(n, stream->mesh.num_cells, cells, texture, seams));
+  stream->num_more = seams->num - n;
+  SetTexture(stream, texture, seams->point, seams->point + 2 * (size_t)n, seams->corner);
+  return 0;
+}
+
+PetscErrorCode EqmStreamOpenWhole(EqmMeshStream *stream, const EqmSerialMesh *mesh, PetscBool with_texture,
+                                  const EqmField *fields, PetscInt num_fields)
 {
   *stream =
       (EqmMeshStream){.comm = PETSC_COMM_SELF, .size = 1, .mesh = *mesh, .num_fields = num_fields, .fields = fields};
-  return SetColumns(stream, mesh->vertices, mesh->cells);
+  EqmTry(SetColumns(stream, mesh->vertices, mesh->cells));
+  return with_texture && mesh->texture && mesh->cell_size == 3 ? OpenWholeTexture(stream, mesh->cells, mesh->texture)
+                                                               : 0;
 }
 
 /* First rows of all ranks' slabs. Collective. */
@@ -89,8 +120,23 @@ static PetscErrorCode FetchCorners(EqmMeshStream *stream, EqmSoup soup, const Pe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmStreamOpen(EqmMeshStream *stream, EqmSoup soup, const PetscReal *vertices, const EqmField *fields,
-                             PetscInt num_fields, PetscBool with_corners)
+/* The same of one that lies in slabs. Collective. */
+static PetscErrorCode OpenTexture(EqmMeshStream *stream, EqmSoup soup, const PetscReal *texture)
+{
+  PetscFunctionBegin;
+  if (stream->size == 1) {
+    PetscCall(OpenWholeTexture(stream, soup->cells, texture));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(EqmSeamsFindSlabs(soup, texture, &stream->seams));
+  PetscCall(ShareStarts(stream, stream->seams.more_end, &stream->more_start));
+  stream->num_more = (PetscInt)stream->seams.num_more;
+  SetTexture(stream, texture, stream->seams.point, stream->seams.more, stream->seams.corner);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmStreamOpen(EqmMeshStream *stream, EqmSoup soup, const PetscReal *vertices, const PetscReal *texture,
+                             const EqmField *fields, PetscInt num_fields, PetscBool with_corners)
 {
   PetscFunctionBegin;
   *stream = (EqmMeshStream){.comm = soup->comm, .num_fields = num_fields, .fields = fields};
@@ -104,6 +150,7 @@ PetscErrorCode EqmStreamOpen(EqmMeshStream *stream, EqmSoup soup, const PetscRea
   PetscCall(ShareStarts(stream, soup->cell_end, &stream->cell_start));
   if (with_corners && stream->size > 1) PetscCall(FetchCorners(stream, soup, vertices));
   PetscCall(SetColumns(stream, vertices, soup->cells));
+  if (texture && soup->cell_size == 3) PetscCall(OpenTexture(stream, soup, texture));
   for (PetscInt c = 0; c < stream->num_columns && stream->size > 1 && stream->rank == 0; ++c)
     PetscCall(PetscMalloc(PetscMax((size_t)BLOCK_BYTES, stream->columns[c].row_bytes), &stream->columns[c].block));
   PetscFunctionReturn(0);
@@ -115,6 +162,9 @@ PetscErrorCode EqmStreamReset(EqmMeshStream *stream)
   EqmTry(PetscFree(stream->columns));
   EqmTry(PetscFree(stream->vertex_start));
   EqmTry(PetscFree(stream->cell_start));
+  EqmTry(PetscFree(stream->more_start));
+  EqmTry(EqmSeamSlabsReset(&stream->seams));
+  EqmTry(EqmSeamsReset(&stream->whole));
   return PetscFree(stream->corner_points);
 }
 

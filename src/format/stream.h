@@ -4,6 +4,7 @@
 #define EQM_FORMAT_STREAM_H
 
 #include "format.h"
+#include "seam.h"
 
 typedef struct EqmMeshStream EqmMeshStream;
 
@@ -22,25 +23,41 @@ typedef struct {
 struct EqmMeshStream {
   MPI_Comm comm;
   PetscMPIInt rank, size;
-  EqmSerialMesh mesh; /* sizes and metadata; arrays and texture only where one rank has all */
+  EqmSerialMesh mesh; /* sizes and metadata; arrays only where one rank has all */
   PetscInt num_fields;
   const EqmField *fields; /* values are this rank's */
-  PetscInt *vertex_start, *cell_start;
-  PetscInt num_columns; /* vertices, cells, corners, and one per field */
+  PetscInt *vertex_start, *cell_start, *more_start;
+  PetscInt num_columns; /* those of the list below, and one per field */
   EqmColumn *columns;
   float *corner_points; /* on several ranks, if wanted: 3 per corner of this rank's cells */
+  PetscBool has_texture;
+  PetscInt num_more;  /* texture points beside one per vertex */
+  EqmSeamSlabs seams; /* of the texture, where it lies in slabs, */
+  EqmSeams whole;     /* or where one rank has all */
 };
 
-/* Which column is which; EQM_COLUMN_FIELDS + f is that of field f. */
-enum { EQM_COLUMN_VERTICES, EQM_COLUMN_CELLS, EQM_COLUMN_CORNERS, EQM_COLUMN_FIELDS };
+/* Which column is which; EQM_COLUMN_FIELDS + f is that of field f. Of a texture: its coordinates, two per corner of
+   every cell; the first point of every vertex; further points; the points of every cell's corners, among these. */
+enum {
+  EQM_COLUMN_VERTICES,
+  EQM_COLUMN_CELLS,
+  EQM_COLUMN_CORNERS,
+  EQM_COLUMN_TEXTURE,
+  EQM_COLUMN_POINTS,
+  EQM_COLUMN_MORE_POINTS,
+  EQM_COLUMN_POINTS_OF_CELLS,
+  EQM_COLUMN_FIELDS
+};
 
-/* EqmStreamOpenWhole - of a mesh that this rank has; not collective. EqmStreamOpen - of the slabs of a soup, with these
-   vertices (3 per vertex) and fields, of both of which a rank has its slab; collective. with_corners - the column of
-   the points of each cell's corners is wanted. All that is given must stay. EqmStreamReset must follow. */
-PETSC_INTERN PetscErrorCode EqmStreamOpenWhole(EqmMeshStream *stream, const EqmSerialMesh *mesh, const EqmField *fields,
-                                               PetscInt num_fields);
+/* EqmStreamOpenWhole - of a mesh that this rank has, with its texture if wanted; not collective. EqmStreamOpen - of the
+   slabs of a soup, with these vertices (3 per vertex), texture (2 per corner of each cell, or NULL) and fields, of
+   which a rank has its slab; collective. with_corners - the column of the points of each cell's corners is wanted. All
+   that is given must stay. EqmStreamReset must follow. */
+PETSC_INTERN PetscErrorCode EqmStreamOpenWhole(EqmMeshStream *stream, const EqmSerialMesh *mesh, PetscBool with_texture,
+                                               const EqmField *fields, PetscInt num_fields);
 PETSC_INTERN PetscErrorCode EqmStreamOpen(EqmMeshStream *stream, EqmSoup soup, const PetscReal *vertices,
-                                          const EqmField *fields, PetscInt num_fields, PetscBool with_corners);
+                                          const PetscReal *texture, const EqmField *fields, PetscInt num_fields,
+                                          PetscBool with_corners);
 PETSC_INTERN PetscErrorCode EqmStreamReset(EqmMeshStream *stream);
 
 /* EqmStreamServe - the ranks other than 0 send the rows that it asks for, until it calls EqmStreamEnd. */
@@ -67,6 +84,15 @@ static inline const PetscReal *EqmStreamVertex(EqmMeshStream *stream, PetscInt r
 static inline const PetscInt *EqmStreamCell(EqmMeshStream *stream, PetscInt row)
 {
   return (const PetscInt *)EqmColumnRow(&stream->columns[EQM_COLUMN_CELLS], row);
+}
+
+/* A texture point by its number. */
+static inline const PetscReal *EqmStreamPoint(EqmMeshStream *stream, PetscInt number)
+{
+  const PetscInt more = number - stream->mesh.num_vertices;
+
+  return (const PetscReal *)EqmColumnRow(&stream->columns[more < 0 ? EQM_COLUMN_POINTS : EQM_COLUMN_MORE_POINTS],
+                                         more < 0 ? number : more);
 }
 
 static inline const PetscReal *EqmStreamField(EqmMeshStream *stream, PetscInt field, PetscInt row)

@@ -81,7 +81,7 @@ PetscErrorCode EqmFormatWriteSerial(const char *file, const EqmSerialMesh *mesh,
 
   if (!format || !(format->write || format->write_stream)) return RejectSuffix(file, error, length);
   EqmTry(JoinFields(format, mesh, fields, num_fields, &all, &num_all));
-  EqmTry(EqmStreamOpenWhole(&stream, mesh, all, num_all));
+  EqmTry(EqmStreamOpenWhole(&stream, mesh, format->writes_texture, all, num_all));
   code = WriteFile(file, format, &stream, error, length);
   EqmTry(EqmStreamReset(&stream));
   EqmTry(PetscFree(all));
@@ -157,22 +157,31 @@ static PetscBool IsLeftOut(const EqmFormat *format, const EqmMeshField *field, P
   return EqmMeshFieldIsOfResult(field->name) || (is_texture && format->writes_texture) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The given fields, then the soup's, a texture last. */
+/* The given fields, then the soup's, a texture last, or apart where the format has a place for it. */
 static PetscErrorCode JoinSlabs(const EqmFormat *format, EqmSoup soup, const EqmField *fields, PetscInt num_fields,
-                                PetscBool is_map, EqmField **all, PetscInt *num_all)
+                                PetscBool is_map, EqmField **all, PetscInt *num_all, const PetscReal **texture)
 {
+  EqmField last = {.name = NULL};
+
   PetscFunctionBegin;
+  *texture = NULL;
   PetscCall(PetscMalloc1(num_fields + soup->num_fields + 1, all));
   *num_all = 0;
-  for (PetscInt f = 0; f < num_fields; ++f) (*all)[(*num_all)++] = fields[f];
-  for (PetscInt f = 0; f < 2 * soup->num_fields; ++f) {
-    const EqmMeshField *const field = &soup->fields[f % soup->num_fields];
-    const PetscBool is_texture = IsTexture(field->name, field->on_cells, field->width, soup->cell_size);
+  for (PetscInt f = 0; f < num_fields + soup->num_fields; ++f) {
+    const EqmMeshField *const own = f < num_fields ? NULL : &soup->fields[f - num_fields];
+    const EqmField field = own ? (EqmField){own->name, own->on_cells, own->width, own->values} : fields[f];
+    const PetscBool is_texture = IsTexture(field.name, field.on_cells, field.width, soup->cell_size);
 
-    if (is_texture != (f >= soup->num_fields ? PETSC_TRUE : PETSC_FALSE)) continue;
-    if (IsTaken(field, fields, num_fields) || (is_map && IsLeftOut(format, field, is_texture))) continue;
-    (*all)[(*num_all)++] = (EqmField){field->name, field->on_cells, field->width, field->values};
+    if (own && (IsTaken(own, fields, num_fields) || (is_map && IsLeftOut(format, own, is_texture)))) continue;
+    if (is_texture)
+      last = field;
+    else
+      (*all)[(*num_all)++] = field;
   }
+  if (last.name && format->writes_texture)
+    *texture = last.values;
+  else if (last.name)
+    (*all)[(*num_all)++] = last;
   PetscFunctionReturn(0);
 }
 
@@ -181,20 +190,19 @@ PetscErrorCode EqmFormatWriteSlabs(EqmSoup soup, const PetscReal *vertices, cons
 {
   const EqmFormat *const format = EqmFormatOfSuffix(file);
   char error[EQM_MESSAGE_MAX] = "";
+  const PetscReal *texture;
   EqmMeshStream stream;
   EqmField *all;
   PetscInt num_all;
-  PetscBool by_rows, has_texture = PETSC_FALSE;
+  PetscBool with_corners;
 
   PetscFunctionBegin;
   if (!format || !(format->write || format->write_stream))
     PetscCall(EqmAgree(soup->comm, RejectSuffix(file, error, sizeof(error)), error));
-  PetscCall(JoinSlabs(format, soup, fields, num_fields, is_map, &all, &num_all));
-  if (num_all)
-    has_texture = IsTexture(all[num_all - 1].name, all[num_all - 1].on_cells, all[num_all - 1].width, soup->cell_size);
-  by_rows = format->write_stream && !(has_texture && format->writes_texture) ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(EqmStreamOpen(&stream, soup, vertices, all, num_all, by_rows && format->writes_corners));
-  PetscCall(by_rows ? WriteRows(&stream, format, file) : WriteFromRoot(&stream, file));
+  PetscCall(JoinSlabs(format, soup, fields, num_fields, is_map, &all, &num_all, &texture));
+  with_corners = format->write_stream && format->writes_corners ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(EqmStreamOpen(&stream, soup, vertices, texture, all, num_all, with_corners));
+  PetscCall(format->write_stream ? WriteRows(&stream, format, file) : WriteFromRoot(&stream, file));
   PetscCall(EqmStreamReset(&stream));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);

@@ -1,6 +1,7 @@
 /* Formats that every rank reads a part of, as other programs and as this one write them: the same mesh, with all that
    belongs to it, as one rank reads alone. */
 #include "support/parts.h"
+#include "mesh/fields.h"
 
 /* A row of a face with a number before it and a list behind it. */
 static void PlyFace(Text *text, PetscBool ascii, int num, const int *corner, int num_marks)
@@ -120,23 +121,41 @@ static PetscBool AreEqual(const char *a, const char *b)
   return c == d ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Rank 0 writes what the others send, in blocks, as it writes what it has alone. */
-static PetscErrorCode TestBlocks(void)
+/* A surface; with_texture - with texture points, of which some vertices have two: seams. */
+static PetscErrorCode MakeHills(MPI_Comm comm, PetscBool with_texture, EqmSoup *soup)
 {
-  static const char *const suffixes[] = {"ply", "stl", "vtu", "msh", "off"};
+  const EqmMeshField kind = {.name = EQM_FIELD_TEXTURE, .on_cells = PETSC_TRUE, .width = 6};
+  PetscReal *uv;
+
+  PetscFunctionBegin;
+  PetscCall(EqmSoupGenerate(comm, "hills", 60000, 1, soup));
+  if (!with_texture) PetscFunctionReturn(0);
+  const PetscInt num = 3 * ((*soup)->cell_end - (*soup)->cell_start);
+
+  PetscCall(EqmMeshFieldsAdd(&(*soup)->num_fields, &(*soup)->fields, &kind, (size_t)num / 3, &uv));
+  for (PetscInt k = 0; k < num; k++) {
+    uv[2 * k] = (PetscReal)(*soup)->cells[k] / (*soup)->num_vertices;
+    uv[2 * k + 1] = (PetscReal)(((*soup)->cell_start + k / 3) % 101 == 0);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Rank 0 writes what the others send, in blocks, as it writes what it has alone. */
+static PetscErrorCode TestBlocks(PetscBool with_texture, size_t num_suffixes, const char *const *suffixes)
+{
   char alone[300];
   EqmSoup together, whole;
   PetscMPIInt rank;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  PetscCall(EqmSoupGenerate(PETSC_COMM_WORLD, "hills", 60000, 1, &together));
-  for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(suffixes); f++) {
+  PetscCall(MakeHills(PETSC_COMM_WORLD, with_texture, &together));
+  for (size_t f = 0; f < num_suffixes; f++) {
     Name(suffixes[f]);
     snprintf(alone, sizeof(alone), "%s/alone.%s", folder, suffixes[f]);
     PetscCall(EqmSoupWrite(together, file));
     if (rank) continue;
-    PetscCall(EqmSoupGenerate(PETSC_COMM_SELF, "hills", 60000, 1, &whole));
+    PetscCall(MakeHills(PETSC_COMM_SELF, with_texture, &whole));
     PetscCall(EqmSoupWrite(whole, alone));
     PetscCall(EqmSoupDestroy(&whole));
     CHECK(AreEqual(file, alone), "%s is another file on several ranks", suffixes[f]);
@@ -157,7 +176,8 @@ int main(int argc, char **argv)
   PetscCall(PetscMalloc1(1, &text));
   PetscCall(TestPly(text));
   PetscCall(TestWritten(text));
-  PetscCall(TestBlocks());
+  PetscCall(TestBlocks(PETSC_FALSE, 5, (const char *const[]){"ply", "stl", "vtu", "msh", "off"}));
+  PetscCall(TestBlocks(PETSC_TRUE, 2, (const char *const[]){"obj", "ply"}));
   PetscCall(PetscFree(text));
   PetscCall(RemoveFolder(PETSC_STATIC_ARRAY_LENGTH(suffixes), suffixes));
   PetscCall(EqmFinalize());
