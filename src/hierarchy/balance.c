@@ -52,88 +52,6 @@ PetscErrorCode EqmTutteLevel(EqmLevelMap *map)
   PetscFunctionReturn(0);
 }
 
-/* A cell's Laplacian `weight` (per corner: of the edge opposite it) times the product of the corners' frames. */
-static void AddLaplacian(const EqmLevelMap *map, const PetscReal weight[3], EqmCellSystem *s, const PetscInt first[3],
-                         PetscInt size)
-{
-  for (PetscInt a = 0; a < 3; a++) {
-    for (PetscInt b = 0; b < 3; b++) {
-      const PetscReal w = a == b ? weight[(a + 1) % 3] + weight[(a + 2) % 3] : -weight[3 - a - b];
-      for (PetscInt k = 0; k < s->count[a]; k++) {
-        for (PetscInt l = 0; l < s->count[b]; l++) {
-          PetscReal product = 0.;
-          for (PetscInt c = 0; c < map->dim; c++)
-            product += s->frame[a][map->dim * k + c] * s->frame[b][map->dim * l + c];
-          s->matrix[size * (first[a] + k) + first[b] + l] += w * product;
-        }
-      }
-    }
-  }
-}
-
-/* Sums over a cell's corners and their directions: derivatives of a measure. */
-static void Project(const EqmLevelMap *map, PetscBool of_area, const PetscReal *const p[3], const EqmCellSystem *s,
-                    PetscReal row[6])
-{
-  PetscReal g[3];
-
-  for (PetscInt a = 0, n = 0; a < 3; a++) {
-    EqmLevelGradient(map->dim, of_area, p[a], p[(a + 1) % 3], p[(a + 2) % 3], g);
-    for (PetscInt k = 0; k < s->count[a]; k++, n++) {
-      row[n] = 0.;
-      for (PetscInt c = 0; c < map->dim; c++) row[n] += s->frame[a][map->dim * k + c] * g[c];
-    }
-  }
-}
-
-/* Minus the gradient of factor times (the cell's Dirichlet energy - its area), on the sphere without the area. */
-static void AddAnglePull(const EqmLevelMap *map, PetscReal factor, const PetscReal half[3], const PetscReal *const p[3],
-                         EqmCellSystem *s)
-{
-  PetscReal area[6] = {0., 0., 0., 0., 0., 0.};
-
-  if (map->dim == 2) Project(map, PETSC_TRUE, p, s, area);
-  for (PetscInt a = 0, n = 0; a < 3; a++) {
-    const PetscInt b = (a + 1) % 3, c = (a + 2) % 3;
-    for (PetscInt k = 0; k < s->count[a]; k++, n++) {
-      PetscReal pull = 0.;
-      for (PetscInt e = 0; e < map->dim; e++)
-        pull += s->frame[a][map->dim * k + e] * (half[c] * (p[a][e] - p[b][e]) + half[b] * (p[a][e] - p[c][e]));
-      s->right[n] -= factor * (pull - area[n]);
-    }
-  }
-}
-
-void EqmBalanceCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, PetscReal floor, EqmCellSystem *s)
-{
-  const PetscInt *const v = map->level->cells + 3 * cell, dim = map->dim;
-  const PetscReal w = map->level->weight[cell], angle = .5 * EqmAngleFactor(map);
-  const PetscReal *const p[3] = {map->x + dim * v[0], map->x + dim * v[1], map->x + dim * v[2]};
-  PetscReal scratch[3], weight[3], worst = 0., row[6];
-  const PetscReal *const half = EqmMapHalfCotangents(map, cell, scratch);
-  EqmLevelResidual residual[2];
-  const PetscInt count = EqmLevelResiduals(dim, p[0], p[1], p[2], 1. / (map->total * w), residual);
-  PetscInt first[3], size = 0;
-
-  for (PetscInt a = 0; a < 3; a++) {
-    s->count[a] = EqmMotionFrame((EqmMotion)map->motion[v[a]], p[a], s->frame[a]);
-    first[a] = size;
-    size += s->count[a];
-  }
-  for (PetscInt k = 0; k < size; k++) s->right[k] = 0.;
-  for (PetscInt k = 0; k < size * size; k++) s->matrix[k] = 0.;
-  for (PetscInt m = 0; m < count; m++) {
-    Project(map, residual[m].of_area, p, s, row);
-    for (PetscInt k = 0; k < size; k++) row[k] *= residual[m].slope;
-    for (PetscInt k = 0; k < size; k++) s->right[k] -= w * residual[m].rho * row[k];
-    for (PetscInt k = 0; k < size * size; k++) s->matrix[k] += w * row[k / size] * row[k % size];
-    worst = PetscMax(worst, PetscAbsReal(residual[m].rho));
-  }
-  AddAnglePull(map, angle, half, p, s);
-  for (PetscInt a = 0; a < 3; a++) weight[a] = angle * half[a] + damping / (2. * PetscSqrtReal(3.)) * (worst + floor);
-  AddLaplacian(map, weight, s, first, size);
-}
-
 /* Fewer are not worth the threads. */
 enum { LEAST_VERTICES = 4096 };
 
@@ -149,11 +67,8 @@ static void AssemblePiece(const EqmLevelMap *map, PetscReal damping, PetscReal f
 {
   const EqmLevelPieces *const pieces = &system->cells;
 
-  for (PetscInt q = pieces->start[piece]; q < pieces->start[piece + 1]; q++) {
-    EqmCellSystem s;
-    EqmBalanceCell(map, pieces->item[q], damping, floor, &s);
-    EqmLevelSystemAdd(system, pieces->item[q], s.matrix, s.right);
-  }
+  for (PetscInt q = pieces->start[piece]; q < pieces->start[piece + 1]; q++)
+    EqmBalanceAddCell(map, pieces->item[q], damping, floor, system);
 }
 
 PetscErrorCode EqmBalanceAssemble(const EqmLevelMap *map, PetscReal damping, PetscReal residual, EqmLevelSystem *system,

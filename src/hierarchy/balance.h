@@ -37,7 +37,7 @@ PETSC_INTERN PetscErrorCode EqmBalanceSearch(EqmLevelMap *map, const PetscReal *
 /* Less damping after whole steps, more after short ones. Not collective. */
 PETSC_INTERN PetscReal EqmBalanceNextDamping(PetscReal damping, PetscReal t);
 
-/* For tests: matrix (6 x 6, row by row) and half the negative gradient of one cell's part of the objective in the
+/* Of one cell: matrix (6 x 6, row by row) and half the negative gradient of one cell's part of the objective in the
    directions of its corners' frames, `frame` 6 per corner; `size` of them in `unknown` order. */
 typedef struct {
   PetscInt count[3];     /* directions per corner */
@@ -47,5 +47,8 @@ typedef struct {
 /* `damping`: factor of the residual-weighted Laplacian; `floor`: what is added to |rho| there. Not collective. */
 PETSC_INTERN void EqmBalanceCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, PetscReal floor,
                                  EqmCellSystem *system);
+/* Add it to the system. Not collective. */
+PETSC_INTERN void EqmBalanceAddCell(const EqmLevelMap *map, PetscInt cell, PetscReal damping, PetscReal floor,
+                                    EqmLevelSystem *system);
 
 #endif

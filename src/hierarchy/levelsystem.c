@@ -120,6 +120,7 @@ PetscErrorCode EqmLevelSystemDestroy(EqmLevelSystem *system)
   PetscCall(PetscFree(system->solution));
   PetscCall(PetscFree(system->offset));
   PetscCall(EqmLevelPiecesDestroy(&system->cells));
+  PetscCall(EqmBlockFactorDestroy(&system->factor));
   PetscFunctionReturn(0);
 }
 
@@ -165,12 +166,11 @@ PetscErrorCode EqmLevelSystemEnd(EqmLevelSystem *system, PetscReal shift, PetscB
 
 PetscErrorCode EqmLevelSystemFactorSolve(EqmLevelSystem *system, PetscBool *success)
 {
-  EqmBlockFactor factor;
+  EqmBlockFactor *const factor = &system->factor;
 
   PetscFunctionBegin;
-  PetscCall(EqmBlockFactorCreate(&system->matrix, &factor));
-  PetscCall(EqmBlockFactorFill(&system->matrix, &factor, success));
-  if (*success) PetscCall(EqmBlockFactorSolve(&factor, system->right, system->solution, success));
-  PetscCall(EqmBlockFactorDestroy(&factor));
+  if (!factor->ksp) PetscCall(EqmBlockFactorCreate(&system->matrix, factor));
+  PetscCall(EqmBlockFactorFill(&system->matrix, factor, success));
+  if (*success) PetscCall(EqmBlockFactorSolve(factor, system->right, system->solution, success));
   PetscFunctionReturn(0);
 }

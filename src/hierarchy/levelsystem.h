@@ -13,6 +13,7 @@ typedef struct {
   PetscReal *right, *solution; /* two per vertex; zero in the place of unknowns that are not there */
   int *offset;                 /* 9 per cell: where in the row of corner a the column of corner b is, at 3 a + b */
   EqmLevelPieces cells;        /* those of different pieces have no row in common */
+  EqmBlockFactor factor;       /* its analysis serves all matrices; empty before the first */
 } EqmLevelSystem;
 
 /* `count` unknowns per vertex. Not collective. */
@@ -24,6 +25,13 @@ PETSC_INTERN PetscErrorCode EqmLevelSystemClear(EqmLevelSystem *system);
 /* Add a cell's matrix and vector, over the unknowns of its corners one after the other. Not collective. */
 PETSC_INTERN void EqmLevelSystemAdd(EqmLevelSystem *system, PetscInt cell, const PetscReal *matrix,
                                     const PetscReal *right);
+/* The block of a cell's corners a and b. */
+static inline EqmBlock *EqmLevelSystemBlock(const EqmLevelSystem *system, PetscInt cell, PetscInt a, PetscInt b)
+{
+  return system->matrix.entry + system->matrix.start[system->level->cells[3 * cell + a]] +
+         system->offset[9 * cell + 3 * a + b];
+}
+
 /* All cells are added: enlarge the diagonal by a factor of 1 + shift. `success` is false where the matrix cannot be
    positive definite. Not collective. */
 PETSC_INTERN PetscErrorCode EqmLevelSystemEnd(EqmLevelSystem *system, PetscReal shift, PetscBool *success);

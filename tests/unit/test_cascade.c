@@ -288,6 +288,43 @@ static PetscErrorCode FillSystem(TwoLevels *two)
   PetscFunctionReturn(0);
 }
 
+/* How far off the system that EqmBalanceAssemble makes is from the sum of EqmBalanceCell, over the largest number. */
+static PetscReal Difference(PetscInt n, const PetscReal *one, const PetscReal *other)
+{
+  PetscReal largest = 0., difference = 0.;
+
+  for (PetscInt k = 0; k < n; k++) {
+    largest = PetscMax(largest, PetscAbsReal(other[k]));
+    difference = PetscMax(difference, PetscAbsReal(one[k] - other[k]));
+  }
+  return difference / largest;
+}
+
+static PetscErrorCode TestAssembly(const char *shape, EqmCascadeTarget target)
+{
+  Case test;
+  TwoLevels two;
+  EqmLevelSystem assembled;
+  PetscBool success;
+  PetscInt n;
+
+  PetscFunctionBegin;
+  PetscCall(CaseGenerate(PETSC_COMM_SELF, shape, 800, target, &test));
+  PetscCall(TwoLevelsCreate(&test, &two));
+  PetscCall(FillSystem(&two));
+  PetscCall(SystemOf(&two.fine, &assembled));
+  PetscCall(EqmBalanceAssemble(&two.fine, .01, PetscSqr(.1 / .3), &assembled, &success));
+  CHECK(success, "a block of the diagonal is not definite");
+  n = assembled.matrix.num_rows;
+  CHECK_CLOSE(Difference(2 * n, assembled.right, two.system.right), 0., 1e-12, 1.);
+  CHECK_CLOSE(Difference(4 * assembled.matrix.start[n], assembled.matrix.entry[0].e, two.system.matrix.entry[0].e), 0.,
+              1e-12, 1.);
+  PetscCall(EqmLevelSystemDestroy(&assembled));
+  PetscCall(TwoLevelsDestroy(&two));
+  PetscCall(CaseDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
 /* The coarser matrix is P^T A P: x^T (P^T A P) y = (P x)^T A (P y) for any x and y; P^T is the transpose of P. */
 static PetscErrorCode TestGalerkin(const char *shape, EqmCascadeTarget target)
 {
@@ -543,6 +580,9 @@ int main(int argc, char **argv)
   PetscCall(TestRelaxation("head", EQM_TARGET_SPHERE));
   PetscCall(TestProlongation("hills", EQM_TARGET_DISK));
   PetscCall(TestProlongation("head", EQM_TARGET_SPHERE));
+  PetscCall(TestAssembly("hills", EQM_TARGET_DISK));
+  PetscCall(TestAssembly("hills", EQM_TARGET_SQUARE));
+  PetscCall(TestAssembly("head", EQM_TARGET_SPHERE));
   PetscCall(TestGalerkin("hills", EQM_TARGET_DISK));
   PetscCall(TestMultigrid("hills", EQM_TARGET_DISK));
   PetscCall(TestGalerkin("head", EQM_TARGET_SPHERE));
