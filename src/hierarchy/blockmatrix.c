@@ -18,11 +18,10 @@ void EqmBlockMatrixMultiply(const EqmBlockMatrix *a, const PetscReal *x, PetscRe
 {
 #pragma omp parallel for schedule(static) if (a->num_rows > LEAST_ROWS)
   for (PetscInt i = 0; i < a->num_rows; i++) {
-    PetscReal sum[2] = {0., 0.};
-    for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++)
-      EqmBlockAddApplied(&a->entry[q], x + 2 * a->column[q], sum);
-    y[2 * i] = sum[0];
-    y[2 * i + 1] = sum[1];
+    EqmBlockSum sum = {{{0., 0.}, {0., 0.}}};
+    for (PetscInt q = a->start[i]; q < a->start[i + 1]; q++) EqmBlockSumAdd(&sum, &a->entry[q], x + 2 * a->column[q]);
+    y[2 * i] = sum.row[0][0] + sum.row[0][1];
+    y[2 * i + 1] = sum.row[1][0] + sum.row[1][1];
   }
 }
 

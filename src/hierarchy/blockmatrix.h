@@ -4,6 +4,7 @@
 #ifndef EQM_BLOCKMATRIX_H
 #define EQM_BLOCKMATRIX_H
 
+#include "geometry/simplex.h"
 #include <petscksp.h>
 
 /* By rows: (0, 0), (0, 1), (1, 0), (1, 1). */
@@ -57,6 +58,19 @@ static inline void EqmBlockAddTransposedProduct(const EqmBlock *a, const EqmBloc
   c->e[1] += a->e[0] * b->e[1] + a->e[2] * b->e[3];
   c->e[2] += a->e[1] * b->e[0] + a->e[3] * b->e[2];
   c->e[3] += a->e[1] * b->e[1] + a->e[3] * b->e[3];
+}
+
+/* Sums of products with the two rows of blocks, each as its two halves that are yet to be added. */
+typedef struct {
+  EqmPoint2 row[2];
+} EqmBlockSum;
+
+static inline void EqmBlockSumAdd(EqmBlockSum *sum, const EqmBlock *a, const PetscReal *x)
+{
+  const EqmPoint2 *const e = (const EqmPoint2 *)a->e, y = *(const EqmPoint2 *)x;
+
+  sum->row[0] += e[0] * y;
+  sum->row[1] += e[1] * y;
 }
 
 /* y += a x, and y += a^T x. */

@@ -8,8 +8,14 @@ void EqmProlongationAdd(const EqmProlongation *p, const PetscReal *coarse, Petsc
 {
 #pragma omp parallel for schedule(static) if (p->num_fine > LEAST_ROWS)
   for (PetscInt i = 0; i < p->num_fine; i++) {
+    EqmPoint2 *const to = (EqmPoint2 *)(fine + 2 * i);
     for (PetscInt q = WIDTH * i; q < WIDTH * i + WIDTH; q++) {
-      if (p->column[q] >= 0) EqmBlockAddApplied(&p->entry[q], coarse + 2 * p->column[q], fine + 2 * i);
+      const PetscReal *const from = coarse + 2 * p->column[q];
+      if (p->column[q] < 0) continue;
+      if (p->plain[i])
+        *to += p->weight[q] * *(const EqmPoint2 *)from;
+      else
+        EqmBlockAddApplied(&p->entry[q], from, fine + 2 * i);
     }
   }
 }
@@ -18,10 +24,14 @@ void EqmProlongationRestrict(const EqmProlongation *p, const PetscReal *fine, Pe
 {
 #pragma omp parallel for schedule(static) if (p->num_fine > LEAST_ROWS)
   for (PetscInt j = 0; j < p->num_coarse; j++) {
-    coarse[2 * j] = coarse[2 * j + 1] = 0.;
+    EqmPoint2 *const to = (EqmPoint2 *)(coarse + 2 * j);
+    *to = (EqmPoint2){0., 0.};
     for (PetscInt k = p->start[j]; k < p->start[j + 1]; k++) {
-      const PetscInt q = p->from[k];
-      EqmBlockAddTransposedApplied(&p->entry[q], fine + 2 * (q / WIDTH), coarse + 2 * j);
+      const PetscInt q = p->from[k], i = q / WIDTH;
+      if (p->plain[i])
+        *to += p->weight[q] * *(const EqmPoint2 *)(fine + 2 * i);
+      else
+        EqmBlockAddTransposedApplied(&p->entry[q], fine + 2 * i, coarse + 2 * j);
     }
   }
 }
@@ -168,36 +178,38 @@ PetscErrorCode EqmProlongationGalerkinPattern(const EqmProlongation *p, const Eq
   PetscFunctionReturn(0);
 }
 
-/* A product's blocks for one fine vertex and one neighbour of it: the columns from j on. `plain`: multiples of one. */
-static inline void AddProducts(const EqmProlongation *p, PetscInt j, PetscInt neighbour, const EqmBlock *half,
-                               const PetscInt *place, EqmBlock *entry)
+/* A product's blocks for one fine vertex and one neighbour of it. */
+static inline void AddProducts(const EqmProlongation *p, PetscInt neighbour, const EqmBlock *half,
+                               const PetscInt *place, EqmBlock *row)
 {
-  for (PetscInt r = WIDTH * neighbour; r < WIDTH * neighbour + WIDTH; r++) {
-    const PetscInt c = p->column[r];
-    if (c < j) continue;
+  for (PetscInt r = WIDTH * neighbour; r < WIDTH * neighbour + WIDTH && p->column[r] >= 0; r++) {
+    EqmBlock *const entry = &row[place[p->column[r]]];
     if (p->plain[neighbour]) {
-      for (int k = 0; k < 4; k++) entry[place[c]].e[k] += half->e[k] * p->entry[r].e[0];
+      EqmPoint2 *const to = (EqmPoint2 *)entry->e;
+      const EqmPoint2 *const from = (const EqmPoint2 *)half->e;
+      to[0] += from[0] * p->weight[r];
+      to[1] += from[1] * p->weight[r];
     } else {
-      EqmBlockAddProduct(half, &p->entry[r], &entry[place[c]]);
+      EqmBlockAddProduct(half, &p->entry[r], entry);
     }
   }
 }
 
-/* The blocks of a coarse row from the diagonal on. */
+/* The blocks of a coarse row, those before the diagonal, too: to leave these out is a jump that no processor guesses,
+   and takes longer. */
 static void RowEntries(const EqmProlongation *p, const EqmBlockMatrix *fine, PetscInt j, const PetscInt *place,
-                       EqmBlock *entry)
+                       EqmBlock *row)
 {
   for (PetscInt k = p->start[j]; k < p->start[j + 1]; k++) {
     const PetscInt i = p->from[k] / WIDTH;
-    const EqmBlock *const from = &p->entry[p->from[k]];
     for (PetscInt q = fine->start[i]; q < fine->start[i + 1]; q++) {
       EqmBlock half = {{0., 0., 0., 0.}};
       if (p->plain[i]) {
-        for (int e = 0; e < 4; e++) half.e[e] = from->e[0] * fine->entry[q].e[e];
+        for (int e = 0; e < 4; e++) half.e[e] = p->weight[p->from[k]] * fine->entry[q].e[e];
       } else {
-        EqmBlockAddTransposedProduct(from, &fine->entry[q], &half);
+        EqmBlockAddTransposedProduct(&p->entry[p->from[k]], &fine->entry[q], &half);
       }
-      AddProducts(p, j, fine->column[q], &half, place, entry);
+      AddProducts(p, fine->column[q], &half, place, row);
     }
   }
 }
@@ -225,11 +237,11 @@ PetscErrorCode EqmProlongationGalerkinFill(const EqmProlongation *p, const EqmBl
 #pragma omp for schedule(static)
     for (PetscInt j = 0; j < p->num_coarse; j++) {
       if (!place) continue;
-      for (PetscInt q = coarse->diagonal[j]; q < coarse->start[j + 1]; q++) {
-        place[coarse->column[q]] = q;
+      for (PetscInt q = coarse->start[j]; q < coarse->start[j + 1]; q++) {
+        place[coarse->column[q]] = q - coarse->start[j];
         coarse->entry[q] = (EqmBlock){{0., 0., 0., 0.}};
       }
-      RowEntries(p, fine, j, place, coarse->entry);
+      RowEntries(p, fine, j, place, coarse->entry + coarse->start[j]);
     }
     free(place);
   }

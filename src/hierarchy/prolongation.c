@@ -49,26 +49,28 @@ static PetscReal BestTriple(const PetscReal x[3], PetscInt n, const PetscInt *ca
                             Row *row)
 {
   const PetscReal edge = -1e-9;
-  PetscReal nearest = PETSC_MAX_REAL, inside = -PETSC_MAX_REAL;
+  PetscReal nearest = PETSC_MAX_REAL, inside = -PETSC_MAX_REAL, distance[MOST_CANDIDATES];
+  PetscReal normal[MOST_CANDIDATES][MOST_CANDIDATES][3], along[MOST_CANDIDATES][MOST_CANDIDATES]; /* of pairs a < b */
 
   row->count = 0;
   for (PetscInt a = 0; a < n; a++) {
+    distance[a] = SquaredDistance(x, place[a]);
     for (PetscInt b = a + 1; b < n; b++) {
-      PetscReal ab[3], along;
-      EqmCross(place[a], place[b], ab);
-      along = EqmDot3(ab, x);
+      EqmCross(place[a], place[b], normal[a][b]);
+      along[a][b] = EqmDot3(normal[a][b], x);
+    }
+  }
+  for (PetscInt a = 0; a < n; a++) {
+    for (PetscInt b = a + 1; b < n; b++) {
       for (PetscInt c = b + 1; c < n; c++) {
-        const PetscReal det = EqmDot3(ab, place[c]);
-        PetscReal bc[3], ca[3], w[3], least, spread;
+        const PetscReal det = EqmDot3(normal[a][b], place[c]);
+        PetscReal w[3], least, spread;
         if (det == 0.) continue;
-        EqmCross(place[b], place[c], bc);
-        EqmCross(place[c], place[a], ca);
-        w[0] = EqmDot3(bc, x) / det;
-        w[1] = EqmDot3(ca, x) / det;
-        w[2] = along / det;
+        w[0] = along[b][c] / det;
+        w[1] = -along[a][c] / det;
+        w[2] = along[a][b] / det;
         least = PetscMin(w[0], PetscMin(w[1], w[2]));
-        spread = w[0] * SquaredDistance(x, place[a]) + w[1] * SquaredDistance(x, place[b]) +
-                 w[2] * SquaredDistance(x, place[c]);
+        spread = w[0] * distance[a] + w[1] * distance[b] + w[2] * distance[c];
         if (least >= edge ? spread >= nearest : nearest < PETSC_MAX_REAL || least <= inside) continue;
         if (least >= edge) nearest = spread;
         inside = PetscMax(inside, least);
@@ -171,15 +173,18 @@ static void SetRow(const EqmLevelMap *map, PetscInt v, const Row *row, const Pet
   }
 }
 
-unsigned char EqmProlongationIsPlain(const EqmBlock *entry)
+void EqmProlongationFindPlain(EqmProlongation *p, PetscInt begin, PetscInt end)
 {
-  PetscBool plain = PETSC_TRUE;
-
-  for (PetscInt j = 0; j < WIDTH; j++) {
-    const PetscReal *const e = entry[j].e;
-    plain = (PetscBool)(plain && e[1] == 0. && e[2] == 0. && e[0] == e[3]);
+#pragma omp parallel for schedule(static) if (end - begin > LEAST_ROWS)
+  for (PetscInt v = begin; v < end; v++) {
+    PetscBool plain = PETSC_TRUE;
+    for (PetscInt q = WIDTH * v; q < WIDTH * v + WIDTH; q++) {
+      const PetscReal *const e = p->entry[q].e;
+      plain = (PetscBool)(plain && e[1] == 0. && e[2] == 0. && e[0] == e[3]);
+      p->weight[q] = e[0];
+    }
+    p->plain[v] = (unsigned char)plain;
   }
-  return (unsigned char)plain;
 }
 
 /* By columns, too. */
@@ -210,11 +215,10 @@ PetscErrorCode EqmProlongationSet(const EqmLevelMap *map, const EqmProlongationR
   PetscCall(PetscMalloc1(WIDTH * num_rows, &p->column));
   PetscCall(PetscMalloc1(WIDTH * num_rows, &p->entry));
   PetscCall(PetscMalloc1(num_rows, &p->plain));
+  PetscCall(PetscMalloc1(WIDTH * num_rows, &p->weight));
 #pragma omp parallel for schedule(static) if (num_fine > LEAST_ROWS)
-  for (PetscInt v = 0; v < num_fine; v++) {
-    SetRow(map, v, &rows[v], number, p->column + WIDTH * v, p->entry + WIDTH * v);
-    p->plain[v] = EqmProlongationIsPlain(p->entry + WIDTH * v);
-  }
+  for (PetscInt v = 0; v < num_fine; v++) SetRow(map, v, &rows[v], number, p->column + WIDTH * v, p->entry + WIDTH * v);
+  EqmProlongationFindPlain(p, 0, num_fine);
   PetscCall(Transpose(p));
   PetscFunctionReturn(0);
 }
@@ -240,6 +244,7 @@ PetscErrorCode EqmProlongationDestroy(EqmProlongation *p)
   PetscCall(PetscFree(p->column));
   PetscCall(PetscFree(p->entry));
   PetscCall(PetscFree(p->plain));
+  PetscCall(PetscFree(p->weight));
   PetscCall(PetscFree(p->start));
   PetscCall(PetscFree(p->from));
   PetscFunctionReturn(0);

@@ -14,7 +14,8 @@ typedef struct {
   PetscInt num_rows, num_columns; /* the same, with those of other ranks that products have to know */
   PetscInt *column;               /* EQM_PROLONGATION_WIDTH per row: coarse vertices; -1: none */
   EqmBlock *entry;                /* for each of these */
-  unsigned char *plain;           /* per row: its blocks are multiples of one */
+  unsigned char *plain;           /* per row: its blocks are multiples of one, by .. */
+  PetscReal *weight;              /* EQM_PROLONGATION_WIDTH per row */
   PetscInt *start, *from;         /* per coarse vertex: which of these are its */
 } EqmProlongation;
 
@@ -32,8 +33,8 @@ PETSC_INTERN void EqmProlongationRows(const EqmLevelMap *map, PetscInt begin, Pe
 PETSC_INTERN PetscErrorCode EqmProlongationSet(const EqmLevelMap *map, const EqmProlongationRow *rows,
                                                const PetscInt *number, PetscInt num_fine, PetscInt num_rows,
                                                PetscInt num_coarse, EqmProlongation *prolongation);
-/* Whether blocks of a row are multiples of one. Not collective. */
-PETSC_INTERN unsigned char EqmProlongationIsPlain(const EqmBlock *entry);
+/* Find out which of the rows begin .. end - 1 are plain, once their blocks are there. Not collective. */
+PETSC_INTERN void EqmProlongationFindPlain(EqmProlongation *prolongation, PetscInt begin, PetscInt end);
 /* The places of the coarser map must be those of the finer one. Not collective. */
 PETSC_INTERN PetscErrorCode EqmProlongationCreate(const EqmLevelMap *finer, const EqmLevelMap *coarser,
                                                   EqmProlongation *prolongation);

@@ -121,7 +121,7 @@ PetscErrorCode EqmSharedProlongationFetch(PetscSF halo, PetscInt num_ghosts, Eqm
     PetscCall(PetscFindInt(p->column[q], num, others, &at));
     p->column[q] = mine + at;
   }
-  for (PetscInt v = n; v < n + num_ghosts; v++) p->plain[v] = EqmProlongationIsPlain(p->entry + WIDTH * v);
+  EqmProlongationFindPlain(p, n, n + num_ghosts);
   PetscCall(PetscFree2(column, others));
   PetscFunctionReturn(0);
 }

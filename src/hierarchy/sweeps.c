@@ -94,15 +94,25 @@ void EqmSweepsFill(EqmSweeps *s, const EqmBlockMatrix *a)
   }
 }
 
-/* sum -= the entries from `begin` to `end` times x. */
-static inline void Subtract(const EqmSweeps *s, PetscInt begin, PetscInt end, const PetscReal *x, PetscReal sum[2])
+typedef float Single4 __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
+typedef PetscReal Real4 __attribute__((vector_size(4 * sizeof(PetscReal))));
+
+/* Add a block in single precision times x. */
+static inline void AddSingle(Real4 *sum, const EqmSingleBlock *a, const PetscReal *x)
 {
-  for (PetscInt q = begin; q < end; q++) {
-    const float *const e = s->entry[q].e;
-    const PetscReal *const y = x + 2 * s->column[q];
-    sum[0] -= (PetscReal)e[0] * y[0] + (PetscReal)e[1] * y[1];
-    sum[1] -= (PetscReal)e[2] * y[0] + (PetscReal)e[3] * y[1];
-  }
+  *sum += __builtin_convertvector(*(const Single4 *)a->e, Real4) * (Real4){x[0], x[1], x[0], x[1]};
+}
+
+/* r = b - the entries from `begin` to `end` times x, and the diagonal's times it where there is one. */
+static inline void Subtract(const EqmSweeps *s, const EqmSingleBlock *diagonal, PetscInt row, PetscInt begin,
+                            PetscInt end, const PetscReal *x, const PetscReal *b, PetscReal *r)
+{
+  Real4 sum = {0., 0., 0., 0.};
+
+  if (diagonal) AddSingle(&sum, diagonal, x + 2 * row);
+  for (PetscInt q = begin; q < end; q++) AddSingle(&sum, &s->entry[q], x + 2 * s->column[q]);
+  r[0] = b[0] - (sum[0] + sum[1]);
+  r[1] = b[1] - (sum[2] + sum[3]);
 }
 
 /* Solve with the enlarged diagonal block. */
@@ -119,11 +129,8 @@ void EqmSweepForward(const EqmSweeps *s, const PetscReal *b, PetscReal *x, Petsc
 #pragma omp parallel for schedule(dynamic) if (s->num_rows > LEAST_ROWS)
   for (PetscInt k = 0; k < s->num_pieces; k++) {
     for (PetscInt i = s->piece_start[k]; i < s->piece_start[k + 1]; i++) {
-      PetscReal right[2] = {b[2 * i], b[2 * i + 1]};
-      Subtract(s, s->part[3 * i], s->part[3 * i + 1], x, right);
-      SolveRow(s, i, right, x + 2 * i);
-      r[2 * i] = right[0];
-      r[2 * i + 1] = right[1];
+      Subtract(s, NULL, i, s->part[3 * i], s->part[3 * i + 1], x, b + 2 * i, r + 2 * i);
+      SolveRow(s, i, r + 2 * i, x + 2 * i);
     }
   }
 }
@@ -131,33 +138,26 @@ void EqmSweepForward(const EqmSweeps *s, const PetscReal *b, PetscReal *x, Petsc
 void EqmSweepResidual(const EqmSweeps *s, const PetscReal *x, PetscReal *r)
 {
 #pragma omp parallel for schedule(static) if (s->num_rows > LEAST_ROWS)
-  for (PetscInt i = 0; i < s->num_rows; i++) {
-    const float *const d = s->diagonal[i].e;
-    r[2 * i] -= (PetscReal)d[0] * x[2 * i] + (PetscReal)d[1] * x[2 * i + 1];
-    r[2 * i + 1] -= (PetscReal)d[2] * x[2 * i] + (PetscReal)d[3] * x[2 * i + 1];
-    Subtract(s, s->part[3 * i + 1], s->part[3 * i + 3], x, r + 2 * i);
-  }
+  for (PetscInt i = 0; i < s->num_rows; i++)
+    Subtract(s, &s->diagonal[i], i, s->part[3 * i + 1], s->part[3 * i + 3], x, r + 2 * i, r + 2 * i);
 }
 
 void EqmSweepBackward(const EqmSweeps *s, const PetscReal *b, PetscReal *x, PetscReal *r)
 {
   const PetscInt n = s->num_rows;
 
+/* what other pieces add, before their x changes; within a piece the present x is as good as x and its change apart */
 #pragma omp parallel for schedule(static) if (n > LEAST_ROWS)
-  for (PetscInt i = 0; i < n; i++) {
-    const float *const d = s->diagonal[i].e;
-    r[2 * i] = b[2 * i] - ((PetscReal)d[0] * x[2 * i] + (PetscReal)d[1] * x[2 * i + 1]);
-    r[2 * i + 1] = b[2 * i + 1] - ((PetscReal)d[2] * x[2 * i] + (PetscReal)d[3] * x[2 * i + 1]);
-    Subtract(s, s->part[3 * i], s->part[3 * i + 3], x, r + 2 * i);
-  }
+  for (PetscInt i = 0; i < n; i++)
+    Subtract(s, NULL, i, s->part[3 * i + 2], s->part[3 * i + 3], x, b + 2 * i, r + 2 * i);
 #pragma omp parallel for schedule(dynamic) if (n > LEAST_ROWS)
   for (PetscInt k = 0; k < s->num_pieces; k++) {
     for (PetscInt i = s->piece_start[k + 1] - 1; i >= s->piece_start[k]; i--) {
-      PetscReal right[2] = {r[2 * i], r[2 * i + 1]};
-      Subtract(s, s->part[3 * i + 1], s->part[3 * i + 2], r, right);
-      SolveRow(s, i, right, r + 2 * i);
-      x[2 * i] += r[2 * i];
-      x[2 * i + 1] += r[2 * i + 1];
+      PetscReal right[2], change[2];
+      Subtract(s, &s->diagonal[i], i, s->part[3 * i], s->part[3 * i + 2], x, r + 2 * i, right);
+      SolveRow(s, i, right, change);
+      x[2 * i] += change[0];
+      x[2 * i + 1] += change[1];
     }
   }
 }

@@ -1,18 +1,17 @@
 /* The cascade alone (docs/methods.md, Cascade): from the start of that name, relaxation of the mesh itself. One
-   iteration is some Gauss-Seidel sweeps over the vertices, a Gauss-Newton step of areas with a little of the angles,
-   ever less, solved to a tenth by multigrid on the hierarchy, and two sweeps more. No matrix is factored but a small
-   one. With a tolerance of the run's own it goes on to this. */
+   iteration is a Gauss-Newton step of areas with a little of the angles, ever less, solved roughly by multigrid on the
+   hierarchy, and two Gauss-Seidel sweeps over the vertices. No matrix is factored but a small one. With a tolerance
+   of the run's own it goes on to this. */
 #include "method/method.h"
 #include "domain/domain_private.h"
 #include "problem/levels.h"
 
 /* Weights of the angle energy, at first and at last; and when another iteration is not worth its time. */
-static const PetscReal first_epsilon = .01, last_epsilon = 1e-3, least_gain = .05;
+static const PetscReal first_epsilon = .01, last_epsilon = 1e-3, least_gain = .03;
 /* The same where the run is to go on: every iteration has a tenth of the one before down to the former, then only where
    one has gained little, down to the latter, beside which rounding counts. */
 static const PetscReal soon_epsilon = 1e-4, least_epsilon = 1e-8;
 enum {
-  SWEEPS = 2,
   MOST_USES = 4 /* relaxations in a row whose multigrid has the prolongations of one map */
 };
 
@@ -39,7 +38,7 @@ static PetscErrorCode SetUp(EqmMethod method, EqmIterate iterate)
             iterate->totals.folds);
   PetscCall(EqmCascadeOptionsDefault(&cascade->options));
   cascade->epsilon = first_epsilon;
-  cascade->options.sweeps = SWEEPS;
+  cascade->options.sweeps = 0; /* those after the step do for the next, too */
   cascade->options.least_gain = 0.;
   PetscCall(EqmProblemGetLevels(method->problem, &cascade->levels));
   PetscCall(EqmLevelsCreateRelaxer(cascade->levels, &cascade->relaxer));
@@ -113,8 +112,8 @@ static PetscErrorCode Step(EqmMethod method, EqmIterate iterate, EqmStep *outcom
   iterate->step_length = 1.;
   *outcome = better ? EQM_STEP_TAKEN : EQM_STEP_CONVERGED;
   if (!better)
-    PetscCall(
-        PetscStrncpy(method->message, "another relaxation would gain less than a twentieth", sizeof(method->message)));
+    PetscCall(PetscStrncpy(method->message, "another relaxation would gain less than three hundredths",
+                           sizeof(method->message)));
   PetscFunctionReturn(0);
 }
 
