@@ -1,17 +1,10 @@
 /* Medit's .mesh, as text: sections of a keyword, a count and lines that end with a reference number. Vertices count
    from 1. Sections that are no vertices, triangles or tetrahedra are passed over. */
 #include "format.h"
-#include "medit.h"
+#include "medit_part.h"
 #include "stream.h"
 
 #include <ctype.h>
-
-const EqmMeditKind EqmMeditKinds[EQM_MEDIT_NUM_KINDS] = {
-    {"Triangles", 6, 2, 3, PETSC_TRUE},   {"Quadrilaterals", 7, 2, 4, PETSC_TRUE},
-    {"Tetrahedra", 8, 3, 4, PETSC_TRUE},  {"Prisms", 9, 3, 6, PETSC_FALSE},
-    {"Hexahedra", 10, 3, 8, PETSC_FALSE}, {"TrianglesP2", 24, 2, 6, PETSC_FALSE},
-    {"Pyramids", 49, 3, 5, PETSC_FALSE},  {"TetrahedraP2", 30, 3, 10, PETSC_FALSE},
-};
 
 typedef struct {
   EqmInput *in;
@@ -19,67 +12,9 @@ typedef struct {
   PetscInt64 dimension;
 } Medit;
 
-/* The first keyword, after comments. Not collective. */
-static PetscBool RecogniseMedit(const char *bytes, size_t length)
-{
-  EqmInput in;
-  char unused[8];
-
-  EqmInputOpen(&in, bytes, length, unused, sizeof(unused));
-  EqmSkipMark(&in);
-  EqmSkipSpace(&in, '#');
-  return EqmReadKeyword(&in, "MeshVersionFormatted");
-}
-
-/* EqmMeditStartCells - `count` cells begin at the cursor; a kind that is not wanted is noted. Not collective. Errors:
-   EQM_ERR_IO (quiet) if the vertices are not known yet. */
-PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 count)
-{
-  char what[64];
-
-  if (!kind->wanted) {
-    snprintf(what, sizeof(what), "%lld %s", (long long)count, kind->keyword);
-    if (count) EqmBuilderNoteOther(builder, kind->dimension, builder->in->cursor, what);
-    return 0;
-  }
-  if (builder->num_vertices || !count) return 0;
-  return EqmReject(builder->in, EQM_ERR_IO, "the section %s comes before the section Vertices", kind->keyword);
-}
-
-/* EqmMeditAddCell - append a cell of a wanted kind by the file's vertex numbers, which count from 1, and its reference
-   number. Not collective. Errors: EQM_ERR_IO (quiet). */
-PetscErrorCode EqmMeditAddCell(EqmBuilder *builder, const EqmMeditKind *kind, const PetscInt64 *vertices,
-                               PetscInt64 reference)
-{
-  PetscInt64 corners[EQM_MEDIT_MAX_CORNERS];
-  PetscInt *cell;
-
-  for (PetscInt k = 0; k < kind->num_corners; ++k) {
-    if (vertices[k] < 1 || vertices[k] > (PetscInt64)builder->num_vertices) {
-      return EqmReject(builder->in, EQM_ERR_IO, "%s: vertex number %lld is out of range 1..%zu", kind->keyword,
-                       (long long)vertices[k], builder->num_vertices);
-    }
-    corners[k] = vertices[k] - 1;
-  }
-  EqmBuilderSetGroup(builder, reference);
-  if (kind->dimension == 2)
-    return EqmBuilderAddFace(builder, NULL, (PetscInt64)builder->num_vertices, kind->num_corners, corners);
-  EqmTry(EqmBuilderAddCells(builder, kind->num_corners, 1, &cell));
-  for (PetscInt k = 0; k < kind->num_corners; ++k) cell[k] = (PetscInt)corners[k];
-  return 0;
-}
-
-static PetscErrorCode ReadInteger(Medit *medit, const char *what, PetscInt64 *value)
-{
-  EqmSkipSpace(medit->in, '#');
-  if (EqmReadInteger(medit->in, value)) return 0;
-  return EqmReject(medit->in, EQM_ERR_IO, "%s: a whole number is missing%s", what,
-                   medit->in->cursor == medit->in->end ? ": the file is truncated" : "");
-}
-
 static PetscErrorCode ParseDimension(Medit *medit)
 {
-  EqmTry(ReadInteger(medit, "Dimension", &medit->dimension));
+  EqmTry(EqmMeditReadInteger(medit->in, "Dimension", &medit->dimension));
   if (medit->dimension == 2 || medit->dimension == 3) return 0;
   return EqmReject(medit->in, EQM_ERR_IO, "dimension %lld: only 2 and 3 are known", (long long)medit->dimension);
 }
@@ -87,41 +22,24 @@ static PetscErrorCode ParseDimension(Medit *medit)
 static PetscErrorCode ParseVertices(Medit *medit)
 {
   EqmInput *const in = medit->in;
-  PetscInt64 count, reference;
-  PetscReal *x;
+  PetscInt64 count;
 
   if (!medit->dimension) return EqmReject(in, EQM_ERR_IO, "the section Vertices comes before Dimension");
   if (medit->builder.num_vertices) return EqmReject(in, EQM_ERR_IO, "a second section Vertices");
   EqmSkipSpace(in, '#');
   EqmTry(EqmReadCount(in, "vertices", 2 * (size_t)medit->dimension + 2, &count));
-  EqmTry(EqmBuilderAddVertices(&medit->builder, (size_t)count, &x));
-  for (PetscInt64 i = 0; i < count; ++i) {
-    x[3 * i + 2] = 0.0; /* of the plane */
-    for (PetscInt64 k = 0; k < medit->dimension; ++k) {
-      EqmSkipSpace(in, '#');
-      if (!EqmReadReal(in, &x[3 * i + k])) {
-        return EqmReject(in, EQM_ERR_IO, "vertex %lld of %lld needs %lld coordinates%s", (long long)i, (long long)count,
-                         (long long)medit->dimension, in->cursor == in->end ? ": the file is truncated" : "");
-      }
-    }
-    EqmTry(ReadInteger(medit, "Vertices", &reference));
-  }
-  return 0;
+  return EqmMeditReadVertices(&medit->builder, medit->dimension, count);
 }
 
 static PetscErrorCode ParseCells(Medit *medit, const EqmMeditKind *kind)
 {
-  PetscInt64 count, reference, corners[EQM_MEDIT_MAX_CORNERS];
+  const PetscInt64 num_vertices = (PetscInt64)medit->builder.num_vertices;
+  PetscInt64 count;
 
   EqmSkipSpace(medit->in, '#');
   EqmTry(EqmReadCount(medit->in, kind->keyword, 2 * (size_t)kind->num_corners + 2, &count));
-  EqmTry(EqmMeditStartCells(&medit->builder, kind, count));
-  for (PetscInt64 i = 0; kind->wanted && i < count; ++i) {
-    for (PetscInt k = 0; k < kind->num_corners; ++k) EqmTry(ReadInteger(medit, kind->keyword, &corners[k]));
-    EqmTry(ReadInteger(medit, kind->keyword, &reference));
-    EqmTry(EqmMeditAddCell(&medit->builder, kind, corners, reference));
-  }
-  return 0;
+  EqmTry(EqmMeditStartCells(&medit->builder, kind, num_vertices, count));
+  return kind->wanted ? EqmMeditReadCells(&medit->builder, kind, num_vertices, count) : 0;
 }
 
 /* Move over numbers, to the next keyword or the end. */
@@ -200,7 +118,8 @@ static PetscErrorCode WriteMedit(EqmAtomicFile *file, EqmMeshStream *stream, cha
 
 EQM_DEFINE_FORMAT(Medit) = {.name = "Medit mesh",
                             .suffixes = "mesh",
-                            .recognise = RecogniseMedit,
+                            .recognise = EqmMeditBegins,
                             .parse = ParseMedit,
+                            .parse_part = EqmMeditParsePart,
                             .write_stream = WriteMedit,
                             .groups = PETSC_TRUE};

@@ -16,8 +16,10 @@ PETSC_INTERN const EqmMeditKind EqmMeditKinds[EQM_MEDIT_NUM_KINDS];
 
 enum { EQM_MEDIT_MAX_CORNERS = 4 }; /* of a cell that is wanted */
 
-PETSC_INTERN PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 count);
-PETSC_INTERN PetscErrorCode EqmMeditAddCell(EqmBuilder *builder, const EqmMeditKind *kind, const PetscInt64 *vertices,
-                                            PetscInt64 reference);
+/* num_vertices - of the whole file. */
+PETSC_INTERN PetscErrorCode EqmMeditStartCells(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 num_vertices,
+                                               PetscInt64 count);
+PETSC_INTERN PetscErrorCode EqmMeditAddCell(EqmBuilder *builder, const EqmMeditKind *kind, PetscInt64 num_vertices,
+                                            const PetscInt64 *vertices, PetscInt64 reference);
 
 #endif

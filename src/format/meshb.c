@@ -1,31 +1,8 @@
 /* Medit's .meshb, the binary form, versions 1 to 4, of either byte order: blocks of a keyword's code, the offset of the
    next block, a count and records. */
 #include "format.h"
-#include "medit.h"
+#include "meshb.h"
 #include "stream.h"
-#include "scalar.h"
-
-enum { CODE_DIMENSION = 3, CODE_VERTICES = 4, CODE_END = 54 };
-
-typedef struct {
-  EqmInput *in;
-  EqmBuilder builder;
-  PetscBool big_endian;
-  EqmScalarType integer, offset, real; /* of this version */
-  PetscInt64 dimension;
-} Meshb;
-
-/* Byte order and version; PETSC_FALSE if these are not the first bytes of a .meshb file. */
-static PetscBool ReadMagic(const char *bytes, size_t length, PetscBool *big_endian, PetscInt64 *version)
-{
-  if (length < 12) return PETSC_FALSE;
-  *big_endian = EqmLoadInteger(bytes, EQM_SCALAR_INT32, PETSC_TRUE) == 1 ? PETSC_TRUE : PETSC_FALSE;
-  *version = EqmLoadInteger(bytes + 4, EQM_SCALAR_INT32, *big_endian);
-  return EqmLoadInteger(bytes, EQM_SCALAR_INT32, *big_endian) == 1 && *version >= 1 && *version <= 4 &&
-                 EqmLoadInteger(bytes + 8, EQM_SCALAR_INT32, *big_endian) == CODE_DIMENSION
-             ? PETSC_TRUE
-             : PETSC_FALSE;
-}
 
 /* The number 1, a version, and the keyword Dimension. Not collective. */
 static PetscBool RecogniseMeshb(const char *bytes, size_t length)
@@ -33,23 +10,14 @@ static PetscBool RecogniseMeshb(const char *bytes, size_t length)
   PetscBool big_endian;
   PetscInt64 version;
 
-  return ReadMagic(bytes, length, &big_endian, &version);
-}
-
-static PetscErrorCode TakeInteger(Meshb *meshb, EqmScalarType type, const char *what, PetscInt64 *value)
-{
-  const char *bytes;
-
-  EqmTry(EqmTakeBytes(meshb->in, EqmScalarSize(type), what, &bytes));
-  *value = EqmLoadInteger(bytes, type, meshb->big_endian);
-  return 0;
+  return EqmMeshbReadMagic(bytes, length, &big_endian, &version);
 }
 
 /* The number of records, and their bytes if the file holds them. */
-static PetscErrorCode TakeRecords(Meshb *meshb, const char *what, size_t record_bytes, PetscInt64 *count,
+static PetscErrorCode TakeRecords(EqmMeshb *meshb, const char *what, size_t record_bytes, PetscInt64 *count,
                                   const char **records)
 {
-  EqmTry(TakeInteger(meshb, meshb->integer, what, count));
+  EqmTry(EqmMeshbTakeInteger(meshb, meshb->integer, what, count));
   if (*count < 0 || (size_t)*count > EqmRemaining(meshb->in) / record_bytes) {
     return EqmReject(meshb->in, EQM_ERR_IO, "%lld %s are announced, but the file is too short: it is truncated",
                      (long long)*count, what);
@@ -57,84 +25,40 @@ static PetscErrorCode TakeRecords(Meshb *meshb, const char *what, size_t record_
   return EqmTakeBytes(meshb->in, (size_t)*count * record_bytes, what, records);
 }
 
-static PetscErrorCode ParseVertices(Meshb *meshb)
+static PetscErrorCode ParseVertices(EqmMeshb *meshb)
 {
-  const size_t real_bytes = EqmScalarSize(meshb->real);
-  const size_t record_bytes = (size_t)meshb->dimension * real_bytes + EqmScalarSize(meshb->integer);
   const char *records;
-  PetscInt64 count;
-  PetscReal *x;
 
   if (meshb->builder.num_vertices) return EqmReject(meshb->in, EQM_ERR_IO, "a second block of vertices");
-  EqmTry(TakeRecords(meshb, "vertices", record_bytes, &count, &records));
-  EqmTry(EqmBuilderAddVertices(&meshb->builder, (size_t)count, &x));
-  for (PetscInt64 i = 0; i < count; ++i) {
-    x[3 * i + 2] = 0.0; /* of the plane */
-    for (PetscInt64 k = 0; k < meshb->dimension; ++k) {
-      x[3 * i + k] =
-          EqmLoadReal(records + (size_t)i * record_bytes + (size_t)k * real_bytes, meshb->real, meshb->big_endian);
-    }
-  }
-  return 0;
+  EqmTry(TakeRecords(meshb, "vertices", EqmMeshbBytesOfVertex(meshb), &meshb->num_vertices, &records));
+  return EqmMeshbReadVertices(meshb, records, meshb->num_vertices);
 }
 
-static PetscErrorCode ParseCells(Meshb *meshb, const EqmMeditKind *kind)
+static PetscErrorCode ParseCells(EqmMeshb *meshb, const EqmMeditKind *kind)
 {
-  const size_t bytes = EqmScalarSize(meshb->integer), record_bytes = (size_t)(kind->num_corners + 1) * bytes;
   const char *records;
-  PetscInt64 count, corners[EQM_MEDIT_MAX_CORNERS];
+  PetscInt64 count;
 
-  EqmTry(TakeRecords(meshb, kind->keyword, record_bytes, &count, &records));
-  EqmTry(EqmMeditStartCells(&meshb->builder, kind, count));
-  for (PetscInt64 i = 0; kind->wanted && i < count; ++i) {
-    for (PetscInt k = 0; k < kind->num_corners; ++k) {
-      const char *const corner = records + (size_t)i * record_bytes + (size_t)k * bytes;
-
-      corners[k] = EqmLoadInteger(corner, meshb->integer, meshb->big_endian);
-    }
-    EqmTry(EqmMeditAddCell(&meshb->builder, kind, corners,
-                           EqmLoadInteger(records + (size_t)(i + 1) * record_bytes - bytes, meshb->integer,
-                                          meshb->big_endian)));
-  }
-  return 0;
+  EqmTry(TakeRecords(meshb, kind->keyword, EqmMeshbBytesOfCell(meshb, kind), &count, &records));
+  EqmTry(EqmMeditStartCells(&meshb->builder, kind, meshb->num_vertices, count));
+  return kind->wanted ? EqmMeshbReadCells(meshb, kind, records, count) : 0;
 }
 
-static PetscErrorCode ParseHeader(Meshb *meshb)
-{
-  static const EqmScalarType integer[5] = {0, EQM_SCALAR_INT32, EQM_SCALAR_INT32, EQM_SCALAR_INT32, EQM_SCALAR_INT64};
-  static const EqmScalarType offset[5] = {0, EQM_SCALAR_INT32, EQM_SCALAR_INT32, EQM_SCALAR_INT64, EQM_SCALAR_INT64};
-  EqmInput *const in = meshb->in;
-  PetscInt64 version, next;
-
-  in->binary = PETSC_TRUE;
-  if (!ReadMagic(in->start, EqmRemaining(in), &meshb->big_endian, &version)) {
-    return EqmReject(in, EQM_ERR_IO, "a .meshb file begins with 1, its version (1 to 4) and its dimension");
-  }
-  in->cursor += 12;
-  meshb->integer = integer[version];
-  meshb->offset = offset[version];
-  meshb->real = version == 1 ? EQM_SCALAR_FLOAT32 : EQM_SCALAR_FLOAT64;
-  EqmTry(TakeInteger(meshb, meshb->offset, "dimension", &next));
-  EqmTry(TakeInteger(meshb, EQM_SCALAR_INT32, "dimension", &meshb->dimension));
-  if (meshb->dimension == 2 || meshb->dimension == 3) return 0;
-  return EqmReject(in, EQM_ERR_IO, "dimension %lld: only 2 and 3 are known", (long long)meshb->dimension);
-}
-
-static PetscErrorCode ParseBlocks(Meshb *meshb)
+static PetscErrorCode ParseBlocks(EqmMeshb *meshb)
 {
   EqmInput *const in = meshb->in;
   PetscInt64 code, next;
 
-  EqmTry(ParseHeader(meshb));
+  EqmTry(EqmMeshbParseHeader(meshb));
   for (;;) {
-    EqmTry(TakeInteger(meshb, EQM_SCALAR_INT32, "next keyword", &code));
-    if (code == CODE_END) return 0;
-    EqmTry(TakeInteger(meshb, meshb->offset, "offset of the next keyword", &next));
+    EqmTry(EqmMeshbTakeInteger(meshb, EQM_SCALAR_INT32, "next keyword", &code));
+    if (code == EQM_MESHB_END) return 0;
+    EqmTry(EqmMeshbTakeInteger(meshb, meshb->offset, "offset of the next keyword", &next));
     if (next <= in->cursor - in->start || next > in->end - in->start) {
       return EqmReject(in, EQM_ERR_IO, "the next keyword cannot be at byte %lld: the file is truncated or damaged",
                        (long long)next);
     }
-    if (code == CODE_VERTICES) EqmTry(ParseVertices(meshb));
+    if (code == EQM_MESHB_VERTICES) EqmTry(ParseVertices(meshb));
     for (int k = 0; k < EQM_MEDIT_NUM_KINDS; ++k) {
       if (code == EqmMeditKinds[k].code) EqmTry(ParseCells(meshb, &EqmMeditKinds[k]));
     }
@@ -151,7 +75,7 @@ static PetscErrorCode ParseMeshb(const char *bytes, size_t length, EqmSerialMesh
                                  size_t error_length)
 {
   EqmInput in;
-  Meshb meshb = {.in = &in};
+  EqmMeshb meshb = {.in = &in};
 
   EqmInputOpen(&in, bytes, length, error, error_length);
   EqmBuilderOpen(&meshb.builder, &in);
@@ -176,7 +100,7 @@ static PetscErrorCode WriteMeshb(EqmAtomicFile *file, EqmMeshStream *stream, cha
   const EqmSerialMesh *const mesh = &stream->mesh;
   const PetscInt group = EqmStreamIndexOf(stream, EqmFieldGroup(stream->fields, stream->num_fields));
   const PetscInt size = mesh->cell_size;
-  const int32_t head[3] = {1, 3, CODE_DIMENSION}, dimension = 3, zero = 0, end = CODE_END;
+  const int32_t head[3] = {1, 3, EQM_MESHB_DIMENSION}, dimension = 3, zero = 0, end = EQM_MESHB_END;
   const int64_t nowhere = 0;
   int64_t offset = 24;
 
@@ -184,7 +108,7 @@ static PetscErrorCode WriteMeshb(EqmAtomicFile *file, EqmMeshStream *stream, cha
   EqmAtomicWrite(file, head, sizeof(head));
   EqmAtomicWrite(file, &offset, 8);
   EqmAtomicWrite(file, &dimension, 4);
-  StartBlock(file, CODE_VERTICES, mesh->num_vertices, 28, &offset);
+  StartBlock(file, EQM_MESHB_VERTICES, mesh->num_vertices, 28, &offset);
   for (PetscInt i = 0; i < mesh->num_vertices; ++i) {
     EqmAtomicWrite(file, EqmStreamVertex(stream, i), 24);
     EqmAtomicWrite(file, &zero, 4);
@@ -207,5 +131,6 @@ EQM_DEFINE_FORMAT(Meshb) = {.name = "Medit meshb",
                             .suffixes = "meshb",
                             .recognise = RecogniseMeshb,
                             .parse = ParseMeshb,
+                            .parse_part = EqmMeshbParsePart,
                             .write_stream = WriteMeshb,
                             .groups = PETSC_TRUE};
