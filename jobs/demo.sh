@@ -23,7 +23,7 @@ mkdir -p "$demo"
 
 say "building"
 [ -f build/CMakeCache.txt ] || quietly cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
-quietly cmake --build build -j "$(nproc)" --target equimap
+quietly cmake --build build -j "$(env -u OMP_NUM_THREADS nproc)" --target equimap
 
 # A scanned mask from a Debian package that is unpacked here, not installed.
 scan=$demo/mannequin-devil.off

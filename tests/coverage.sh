@@ -12,9 +12,9 @@ fi
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 cmake -S . -B "$folder" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS='--coverage -O1 -fprofile-update=atomic' \
   -DEQUIMAP_TESTS=ON -DEQUIMAP_PERF=OFF
-cmake --build "$folder" -j "$(nproc)"
+cmake --build "$folder" -j "$(env -u OMP_NUM_THREADS nproc)"
 find "$folder" -name '*.gcda' -delete
 [ $# -gt 0 ] || set -- -R '^(unit|integration|verification|application|zoo|scans)\..*\.1$|^jobs\.' -LE 'nightly|perf'
-ctest --test-dir "$folder" -j "$(nproc)" --timeout 3600 "$@" || echo "some tests fail; their lines count all the same" >&2
+ctest --test-dir "$folder" -j "$(env -u OMP_NUM_THREADS nproc)" --timeout 3600 "$@" || echo "some tests fail; their lines count all the same" >&2
 gcovr --root . --filter 'src/' --object-directory "$folder" "$folder" --txt "$folder/coverage.txt"
 tail -n 4 "$folder/coverage.txt"

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-build-int64}
-jobs=${EQUIMAP_JOBS:-$(nproc)}
+jobs=${EQUIMAP_JOBS:-$(env -u OMP_NUM_THREADS nproc)}
 if ! pkg-config --exists PETSc64; then
   echo "int64: there is no PETSc64; on Debian: apt-get install libpetsc64-real-dev libslepc64-real-dev"
   exit 77

@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${EQUIMAP_BUILD:-build}
-cores=$(nproc)
+cores=$(env -u OMP_NUM_THREADS nproc)
 
 [ -x jobs/setup.sh ] && jobs/setup.sh --tests
 

@@ -175,7 +175,7 @@ PetscErrorCode EqmDomainAddProjected(EqmDomain domain, const EqmPlace *place, co
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EqmDomainExpand(EqmDomain domain, const EqmPlace *place, Vec dofs, PetscReal *ambient)
+PetscErrorCode EqmDomainExpandOwned(EqmDomain domain, const EqmPlace *place, Vec dofs, PetscReal *ambient)
 {
   const PetscScalar *g;
 
@@ -193,6 +193,13 @@ PetscErrorCode EqmDomainExpand(EqmDomain domain, const EqmPlace *place, Vec dofs
     }
   }
   PetscCall(VecRestoreArrayRead(dofs, &g));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EqmDomainExpand(EqmDomain domain, const EqmPlace *place, Vec dofs, PetscReal *ambient)
+{
+  PetscFunctionBegin;
+  PetscCall(EqmDomainExpandOwned(domain, place, dofs, ambient));
   PetscCall(EqmMeshUpdateGhosts(domain->mesh, domain->dim, ambient));
   PetscFunctionReturn(0);
 }

@@ -59,4 +59,7 @@ PETSC_INTERN void EqmDomainSumBoundary(EqmDomain domain, const EqmPlace *place, 
 /* From the sums over all ranks. Not collective. */
 PETSC_INTERN PetscBool EqmDomainIsInOrder(EqmDomain domain, const PetscReal sum[EQM_BOUNDARY_SUMS]);
 
+/* EqmDomainExpand without the ghosts. Not collective. */
+PETSC_INTERN PetscErrorCode EqmDomainExpandOwned(EqmDomain domain, const EqmPlace *place, Vec dofs, PetscReal *ambient);
+
 #endif

@@ -42,7 +42,7 @@ typedef struct {
   PetscInt length, room, *column;
 } Chunk;
 
-/* A few numbers, ascending. */
+/* A few numbers, ascending. PETSc's sorting is for one thread where it keeps a stack of its functions. */
 static void Sort(PetscInt count, PetscInt *number)
 {
   for (PetscInt k = 1; k < count; k++) {

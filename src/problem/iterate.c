@@ -33,6 +33,11 @@ PetscErrorCode EqmIterateUpdate(EqmProblem problem, EqmIterate iterate)
   PetscFunctionReturn(0);
 }
 
+PetscReal EqmIterateMeanEnergy(EqmIterate iterate)
+{
+  return iterate->totals.energy / iterate->totals.total;
+}
+
 PetscErrorCode EqmIterateUpdateTotals(EqmProblem problem, EqmIterate iterate)
 {
   PetscFunctionBegin;

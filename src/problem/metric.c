@@ -206,7 +206,7 @@ static PetscErrorCode ApplyInSpace(EqmMetric metric, const EqmPlace *place, Vec 
   const PetscInt n = problem->mesh->num_owned, dim = problem->domain->dim;
 
   PetscFunctionBegin;
-  PetscCall(EqmDomainExpand(problem->domain, place, g, metric->ambient));
+  PetscCall(EqmDomainExpandOwned(problem->domain, place, g, metric->ambient));
   for (PetscInt k = 0; k < dim * n; k++) metric->columns[(k % dim) * n + k / dim] = metric->ambient[k];
   PetscCall(EqmGroupApply(problem, dim, metric->columns));
   for (PetscInt k = 0; k < dim * n; k++) metric->ambient[k] = metric->columns[(k % dim) * n + k / dim];

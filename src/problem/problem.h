@@ -82,6 +82,8 @@ PETSC_INTERN PetscErrorCode EqmIterateCreate(EqmProblem problem, EqmIterate *ite
 PETSC_INTERN PetscErrorCode EqmIterateDestroy(EqmIterate *iterate);
 /* Compute image and totals from the place. Collective. */
 PETSC_INTERN PetscErrorCode EqmIterateUpdate(EqmProblem problem, EqmIterate iterate);
+/* E per measure of the image: the mean square of how far ratios are off. Not collective. */
+PETSC_INTERN PetscReal EqmIterateMeanEnergy(EqmIterate iterate);
 /* Compute the totals alone, where the image is up to date already. Collective. */
 PETSC_INTERN PetscErrorCode EqmIterateUpdateTotals(EqmProblem problem, EqmIterate iterate);
 /* A trial becomes the iterate: its place, image and value, and the length of the step to it. Collective. */

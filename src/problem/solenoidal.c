@@ -42,7 +42,7 @@ PetscErrorCode EqmSolenoidalCreate(EqmProblem problem, EqmSolenoidal *out)
   space->num_splines = NumberSplines(space->number);
   space->size = EQM_FIELDS_PER_SPLINE * space->num_splines;
   PetscCall(PetscMalloc3(space->size, &space->coefficient, NumParts(mesh) * space->size, &space->partial,
-                         3 * mesh->num_local, &space->ambient));
+                         3 * mesh->num_owned, &space->ambient));
   *out = space;
   PetscFunctionReturn(0);
 }
@@ -140,7 +140,7 @@ PetscErrorCode EqmSolenoidalSolve(EqmSolenoidal space, const EqmPlace *place, Ve
 
   PetscFunctionBegin;
   PetscCall(EqmEventBegin(domain->mesh->ledger, EQM_EVENT_SOLVE));
-  PetscCall(EqmDomainExpand(domain, place, g, space->ambient));
+  PetscCall(EqmDomainExpandOwned(domain, place, g, space->ambient));
   PetscCall(RestrictAll(space, place->x));
   PetscCall(PetscBLASIntCast(space->size, &n));
   PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &n, &one, space->factor, &n, space->coefficient, &n, &info));

@@ -36,8 +36,7 @@ static Range RangeOf(EqmMesh mesh, const PetscReal *x, PetscInt cell)
   for (PetscInt k = 0; k < 3; k++) {
     PetscInt least = EQM_SPLINE_SIDE, most = -EQM_SPLINE_SIDE;
     for (PetscInt a = 0; a < 4; a++) {
-      PetscReal value[3], derivative[3];
-      const PetscInt base = EqmSplinesAlong(x[3 * mesh->cells[4 * cell + a] + k], value, derivative);
+      const PetscInt base = EqmSplineBase(x[3 * mesh->cells[4 * cell + a] + k]);
       least = PetscMin(least, base);
       most = PetscMax(most, base);
     }

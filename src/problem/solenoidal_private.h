@@ -17,7 +17,7 @@ struct _p_EqmSolenoidal {
   PetscInt size;                /* fields in all: the first of every spline, then the second, ... */
   PetscScalar *factor;          /* Cholesky's, size x size by columns; NULL before the first */
   PetscReal *coefficient, *partial;
-  PetscReal *ambient; /* velocities in space, per local vertex */
+  PetscReal *ambient; /* velocities in space, per owned vertex */
 };
 
 /* Splines at x with their gradients: spline (base + (i, j, k) - 1) is number 9 i + 3 j + k. */
@@ -26,12 +26,19 @@ typedef struct {
   PetscReal value[EQM_SPLINES_AT_POINT], gradient[3][EQM_SPLINES_AT_POINT];
 } EqmSplines;
 
+/* How many steps from the centre the middle one of the splines at x is. */
+EQM_INLINE PetscInt EqmSplineBase(PetscReal x)
+{
+  const PetscInt half = EQM_SPLINE_SIDE / 2, nearest = (PetscInt)PetscFloorReal(x / EQM_SPLINE_STEP + .5);
+
+  return PetscMax(1 - half, PetscMin(half - 1, nearest));
+}
+
 /* In one direction: values and derivatives of three quadratic B-splines, the middle one `base` steps from the centre.
  */
 EQM_INLINE PetscInt EqmSplinesAlong(PetscReal x, PetscReal value[3], PetscReal derivative[3])
 {
-  const PetscInt half = EQM_SPLINE_SIDE / 2, nearest = (PetscInt)PetscFloorReal(x / EQM_SPLINE_STEP + .5);
-  const PetscInt base = PetscMax(1 - half, PetscMin(half - 1, nearest));
+  const PetscInt base = EqmSplineBase(x);
   const PetscReal t = PetscMax(-.5, PetscMin(.5, x / EQM_SPLINE_STEP - (PetscReal)base)), step = EQM_SPLINE_STEP;
 
   value[0] = .5 * (.5 - t) * (.5 - t);

@@ -44,7 +44,7 @@ static PetscErrorCode Evaluate(EqmProblem problem, EqmIterate iterate, PetscReal
   PetscReal *image;
 
   PetscFunctionBegin;
-  *value = problem->terms ? iterate->totals.energy : iterate->totals.energy / iterate->totals.total;
+  *value = problem->terms ? iterate->totals.energy : EqmIterateMeanEnergy(iterate);
   if (!problem->terms) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(problem->mesh->num_local_cells, &image));
   PetscCall(EqmProblemEvaluate(problem, iterate, &iterate->place, image, value, NULL));

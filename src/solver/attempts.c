@@ -14,11 +14,6 @@ static const PetscReal fair_energy = 1e-4;
 
 enum { MOST_STARTS = 8 };
 
-static PetscReal EnergyPerArea(EqmSolver solver)
-{
-  return solver->iterate->totals.energy / solver->iterate->totals.total;
-}
-
 /* Is the map without folds, but further from equal ratios than `level`? What a user has limited is left as it is, and
    with terms equal ratios are not all that is wanted, so that only a poor map is off. */
 static PetscBool IsOff(EqmSolver solver, PetscReal level)
@@ -226,7 +221,7 @@ static PetscErrorCode TryNewton(EqmSolver solver, PetscBool other_starts, EqmAtt
   const PetscBool is_small = (PetscBool)(solver->mesh->num_vertices <= 10000);
   const PetscReal short_first = 30., as_is = .01;
   const PetscReal far_energy = is_small ? fair_energy : 1e-3;
-  const PetscReal before = EnergyPerArea(solver);
+  const PetscReal before = EqmIterateMeanEnergy(solver->iterate);
   const EqmStartType *const limbs = &EqmStartSphereSolidAngle;
   PetscReal tried;
   Host lm;
@@ -239,7 +234,8 @@ static PetscErrorCode TryNewton(EqmSolver solver, PetscBool other_starts, EqmAtt
     PetscCall(TryStart(solver, limbs, attempts, 0, &tried));
     PetscCall(TakeBackLm(solver, &attempts->first, &lm));
   }
-  if (IsOff(solver, fair_energy) && !(EnergyPerArea(solver) < before)) PetscCall(GoOnByNewton(solver, as_is, attempts));
+  if (IsOff(solver, fair_energy) && !(EqmIterateMeanEnergy(solver->iterate) < before))
+    PetscCall(GoOnByNewton(solver, as_is, attempts));
   PetscFunctionReturn(0);
 }
 

@@ -192,7 +192,6 @@ static PetscBool StillFalls(EqmSolver solver)
 
 PetscErrorCode EqmJudgePoor(EqmSolver solver)
 {
-  const EqmImageTotals *const totals = &solver->iterate->totals;
   const char *const measures = solver->mesh->cell_size == 3 ? "areas" : "volumes";
 
   PetscFunctionBegin;
@@ -201,7 +200,7 @@ PetscErrorCode EqmJudgePoor(EqmSolver solver)
   PetscCall(PetscSNPrintf(solver->message + strlen(solver->message), sizeof(solver->message) - strlen(solver->message),
                           "; the map is poor, far from equal %s: ratios are off by %.2g, root mean square (the target "
                           "may not suit the mesh: corners, slivers, thin limbs?)%s",
-                          measures, (double)PetscSqrtReal(totals->energy / totals->total),
+                          measures, (double)PetscSqrtReal(EqmIterateMeanEnergy(solver->iterate)),
                           StillFalls(solver) ? "; the objective still fell: -energy_rtol 0 -max_it 500 goes on" : ""));
   PetscFunctionReturn(0);
 }
