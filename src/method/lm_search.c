@@ -73,14 +73,32 @@ static PetscErrorCode Backtrack(EqmMethod method, PetscReal slope, PetscReal *t)
   PetscFunctionReturn(0);
 }
 
-/* Is another step on this factor worth less than a new factor? The marginal value theorem with costs in steps: leave
-   when the recent decrease of log(objective) per step is below the average per cost since the factorisation. */
-static PetscBool IsUsedUp(PetscInt steps, const PetscReal *objective, PetscReal before)
+/* The decrease of log(objective) per step over the last few. */
+static PetscReal RecentDecrease(PetscInt steps, const PetscReal *objective)
 {
   const PetscInt window = PetscMin(steps, INNER_WINDOW);
-  const PetscReal recent = PetscLogReal(objective[steps - window] / objective[steps]) / window;
 
-  return (PetscBool)(steps >= 3 && recent < PetscLogReal(before / objective[steps]) / (factor_cost + steps));
+  return PetscLogReal(objective[steps - window] / objective[steps]) / window;
+}
+
+/* Is another step on this factor worth less than a new factor? The marginal value theorem with costs in steps: leave
+   when the recent decrease of log(objective) per step is below the average per cost since the factorisation. Not where
+   the run would have the energy that it is to reach, E being about A sum w rho^2, before a new factor were there. */
+static PetscBool IsUsedUp(PetscInt steps, const PetscReal *objective, PetscReal before, PetscReal excess)
+{
+  const PetscReal recent = RecentDecrease(steps, objective);
+
+  if (steps < 3 || PetscLogReal(excess) < factor_cost * recent) return PETSC_FALSE;
+  return (PetscBool)(recent < PetscLogReal(before / objective[steps]) / (factor_cost + steps));
+}
+
+/* How far the energy is above the one that the run is to reach: infinite where there is none. */
+static PetscReal Excess(EqmMethod method, const EqmIterate iterate)
+{
+  const PetscReal close = .99;
+
+  if (method->energy_target <= 0.) return INFINITY;
+  return ((EqmLm *)method->data)->now.squares * iterate->totals.total / (close * method->energy_target);
 }
 
 /* Quasi-Newton steps (L-BFGS) with the present factor as the initial inverse Hessian: a solve is some twenty times
@@ -89,7 +107,7 @@ PetscErrorCode EqmLmInnerSteps(EqmMethod method, EqmIterate iterate)
 {
   EqmLm *const lm = method->data;
   const PetscInt most = lm->by_cycles ? 0 : lm->most_inner;
-  PetscReal *objective, t = .25, slope;
+  PetscReal *objective, t = .25, slope, excess = Excess(method, iterate);
 
   PetscFunctionBegin;
   if (most == 0) PetscFunctionReturn(0);
@@ -97,7 +115,8 @@ PetscErrorCode EqmLmInnerSteps(EqmMethod method, EqmIterate iterate)
   objective[0] = lm->now.objective;
   PetscCall(EqmPairsForget(lm->pairs));
   PetscCall(EqmLmGradient(method)); /* lm->mean stays the factor's */
-  for (PetscInt k = 0; k < most && (k == 0 || !IsUsedUp(k, objective, iterate->objective)); k++) {
+  for (PetscInt k = 0; k < most && excess > 1. && (k == 0 || !IsUsedUp(k, objective, iterate->objective, excess));
+       k++) {
     PetscCall(VecCopy(lm->descent, lm->direction));
     PetscCall(EqmPairsDirection(lm->pairs, EqmLmApplyInverse, method, lm->direction));
     PetscCall(VecDot(lm->descent, lm->direction, &slope));
@@ -111,6 +130,7 @@ PetscErrorCode EqmLmInnerSteps(EqmMethod method, EqmIterate iterate)
     PetscCall(
         EqmPairsAdd(lm->pairs, t, lm->direction, lm->descent, lm->old_descent)); /* descent is minus the gradient */
     objective[k + 1] = lm->now.objective;
+    excess = Excess(method, iterate);
   }
   PetscCall(EqmLmGradientNorm(method, &iterate->gradient_norm));
   PetscCall(PetscFree(objective));

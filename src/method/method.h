@@ -43,6 +43,7 @@ struct _p_EqmMethod {
   EqmIterate iterate;        /* the one that is worked on, for callbacks */
   PetscBool goes_on;         /* the run has an energy to reach or to stand still at: the method's own idea of enough,
                                 if it has one, does not count */
+  PetscReal energy_target;   /* the energy that the run is to reach, for methods that can aim at it; 0: none */
   PetscBool takes_landmarks; /* it draws the problem's landmarks, though it takes no terms */
   PetscBool takes_terms;     /* it minimises the problem's added terms with the leading one */
   /* What the leading term must have: be least where all ratios are one; second derivatives. */

@@ -14,13 +14,14 @@ static const PetscReal fair_energy = 1e-4;
 
 enum { MOST_STARTS = 8 };
 
-/* Is the map without folds, but further from equal ratios than `level`? What a user has limited is left as it is, and
-   with terms equal ratios are not all that is wanted, so that only a poor map is off. */
+/* Is the map without folds, but further from equal ratios than `level`? What a user has limited is left as it is, or has
+   wanted no better; with terms equal ratios are not all that is wanted, so that only a poor map is off. */
 static PetscBool IsOff(EqmSolver solver, PetscReal level)
 {
   const EqmImageTotals *const totals = &solver->iterate->totals;
   const PetscReal poor = EqmJudgePoorEnergy(solver);
 
+  if (totals->energy <= solver->settings.energy_target) return PETSC_FALSE;
   if (solver->status == EQM_STATUS_STOPPED || solver->limited || totals->folds > 0) return PETSC_FALSE;
   return (PetscBool)(poor > 0. && totals->energy > (solver->problem->terms ? poor : level) * totals->total);
 }

@@ -11,6 +11,7 @@ static PetscErrorCode SetUpMethod(EqmSolver solver)
   PetscFunctionBegin;
   solver->iterate->figures = EQM_STEP_UNKNOWN;
   solver->method->goes_on = (PetscBool)(solver->settings.energy_target > 0. || solver->settings.energy_rtol > 0.);
+  solver->method->energy_target = solver->settings.energy_target;
   PetscCall(EqmMethodSetUp(solver->method, solver->problem, solver->iterate));
   PetscCall(EqmSolverCallMonitor(solver, EQM_MONITOR_BEGIN, solver->problem->linear_solver));
   if (solver->checkpoints.open)

@@ -185,6 +185,7 @@ def check_stopping(program):
     assert "wall_time" in json.loads(program.read("wall.json"))["message"]
     target = program.succeed("disk", "shuffled.obj", "-o", "target.h5", "-summary", "target.json", "-energy_target", "1e-2")
     assert target.returncode == 0 and json.loads(program.read("target.json"))["energy"]["final"] <= 1e-2
+    assert "once more" not in target.stdout + target.stderr and "mixed" not in target.stdout + target.stderr, target.stdout
     for name in ("start.h5", "wall.h5", "target.h5"):
         with h5py.File(program.file(name), "r") as result:
             assert numpy.isfinite(result["/map/coordinates"][...]).all()
