@@ -5,7 +5,7 @@
 
 enum { LONGEST_PREAMBLE = 1 << 24 };
 
-/* On rank 0: where the section of nodes begins; -1: nowhere near the beginning. */
+/* On rank 0: where a line begins with the section of nodes; -1: nowhere near the beginning. */
 static PetscInt64 FindNodes(const EqmPartFile *file)
 {
   static const char *const names[] = {"$Nodes", "$ParametricNodes"};
@@ -16,9 +16,10 @@ static PetscInt64 FindNodes(const EqmPartFile *file)
   while (!found && (at = EqmFileWindowFind(&window, at + 1, '$')) >= 0 && at < LONGEST_PREAMBLE) {
     for (int k = 0; k < 2; ++k) {
       const size_t length = strlen(names[k]);
-      const char *const bytes = EqmFileWindowAt(&window, at, length + 1);
+      const char *const bytes = EqmFileWindowAt(&window, at - 1, length + 2);
 
-      if (bytes && !memcmp(bytes, names[k], length) && EqmIsSpace(bytes[length])) found = PETSC_TRUE;
+      if (!bytes || (bytes[0] != '\n' && bytes[0] != '\r')) continue;
+      if (!memcmp(bytes + 1, names[k], length) && EqmIsSpace(bytes[length + 1])) found = PETSC_TRUE;
     }
   }
   return EqmFileWindowReset(&window) || !found ? -1 : at;

@@ -80,6 +80,22 @@ static PetscErrorCode TestPly(Text *text)
   PetscFunctionReturn(0);
 }
 
+/* A section must begin on a line of its own. */
+static PetscErrorCode TestMsh(Text *text)
+{
+  PetscFunctionBegin;
+  Name("msh");
+  for (int joined = 0; joined < 2; joined++) {
+    *text = (Text){.end = "\n"};
+    Line(text, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"skin\"");
+    Line(text, joined ? "$EndPhysicalNames$Nodes\n3" : "$EndPhysicalNames\n$Nodes\n3");
+    Line(text, "1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements");
+    PetscCall(joined ? CheckRefused(text, EQM_ERR_IO) : CheckRead(text, 1));
+  }
+  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD)); /* before the file changes */
+  PetscFunctionReturn(0);
+}
+
 /* What the writers make of surfaces with groups, textures without and with seams, and fields. */
 static PetscErrorCode TestWritten(Text *text)
 {
@@ -209,6 +225,7 @@ int main(int argc, char **argv)
   PetscCall(MakeFolder());
   PetscCall(PetscMalloc1(1, &text));
   PetscCall(TestPly(text));
+  PetscCall(TestMsh(text));
   PetscCall(TestWritten(text));
   PetscCall(TestMedit(text));
   PetscCall(TestBlocks(PETSC_FALSE, 5, (const char *const[]){"ply", "stl", "vtu", "msh", "off"}));
