@@ -20,8 +20,6 @@ PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options)
   PetscFunctionReturn(0);
 }
 
-static const PetscReal epsilon_coarsest = .1;
-
 /* The first four vertices on the sphere, as the corners of a regular tetrahedron; the rest comes by reinsertion. */
 static PetscErrorCode PlaceTetrahedron(EqmLevelMap *map)
 {
@@ -37,22 +35,32 @@ static PetscErrorCode PlaceTetrahedron(EqmLevelMap *map)
   PetscFunctionReturn(0);
 }
 
-/* To the minimum, with more weight on the angles first. */
-static PetscErrorCode BalanceCoarsest(EqmLevelMap *map, const EqmCascadeOptions *options)
+/* To the minimum. Where that is far from equal areas in the plane, the weight of the angles falls until it is close:
+   shear grows with a strip's length by width, and outweighs the areas where that is in the hundreds. */
+static PetscErrorCode BalanceCoarsest(EqmLevelMap *map, EqmCascadeOptions *options)
 {
   const EqmBalanceOptions steps = {.most_steps = 60, .gain = 1e-3, .damping = .1};
+  const PetscReal far = .1, close = .01, least_epsilon = 1e-6;
+  EqmLevelValue value;
 
   PetscFunctionBegin;
-  map->epsilon = PetscMax(epsilon_coarsest, options->epsilon);
-  PetscCall(EqmBalanceLevel(map, 0, &steps));
   map->epsilon = options->epsilon;
-  PetscCall(EqmBalanceLevel(map, 0, &steps));
+  for (int k = 0; k < 2; k++) PetscCall(EqmBalanceLevel(map, 0, &steps)); /* once more with the damping of the first */
+  PetscCall(EqmLevelMapEvaluate(map, map->x, &value));
+  if (map->dim == 3 || !(value.energy > far * map->total)) PetscFunctionReturn(0);
+  while (value.energy > close * map->total && map->epsilon > least_epsilon) {
+    map->epsilon *= .1;
+    PetscCall(EqmBalanceLevel(map, 0, &steps));
+    PetscCall(EqmLevelMapEvaluate(map, map->x, &value));
+  }
+  options->epsilon = map->epsilon;
+  options->epsilon_finest = PetscMin(map->epsilon, options->epsilon_finest);
   PetscFunctionReturn(0);
 }
 
 /* Map one of the coarsest levels. Planar: the finest of them, for coarser ones have more ways to go wrong, but Tutte's
    map shrinks limbs until arithmetic loses them. Returns which. */
-static PetscErrorCode MapCoarsest(EqmLevelMap *map, PetscInt last, const EqmCascadeOptions *options, PetscInt *which)
+static PetscErrorCode MapCoarsest(EqmLevelMap *map, PetscInt last, EqmCascadeOptions *options, PetscInt *which)
 {
   PetscInt k = last;
   EqmLevelValue value;
@@ -169,18 +177,20 @@ static PetscErrorCode CascadeLevels(EqmHierarchy hierarchy, EqmCascadeTarget tar
                                     PetscReal *x, EqmCascadeResult *result)
 {
   const PetscInt last = hierarchy->num_levels - 1;
+  EqmCascadeOptions weighted = *options;
   EqmLevelMap map[EQM_MOST_LEVELS];
   PetscInt coarsest;
 
   PetscFunctionBegin;
   PetscCall(CreateMaps(hierarchy, target, x, map));
   result->before = INFINITY;
-  PetscCall(MapCoarsest(map, last, options, &coarsest));
+  PetscCall(MapCoarsest(map, last, &weighted, &coarsest));
+  result->epsilon = weighted.epsilon;
   PetscCall(Show(options, &map[coarsest], "coarsest", 0));
   for (PetscInt k = coarsest - 1; k >= 0; k--) {
     PetscInt hard;
     PetscCall(EqmReinsert(&map[k + 1], &map[k], &hard));
-    map[k].epsilon = k == 0 ? options->epsilon_finest : options->epsilon;
+    map[k].epsilon = k == 0 ? weighted.epsilon_finest : weighted.epsilon;
     PetscCall(Show(options, &map[k], "reinserted", hard));
     PetscCall(RelaxLevel(&map[k], last - k, options));
   }
@@ -219,6 +229,7 @@ static PetscErrorCode OnFirstRank(EqmHierarchy hierarchy, Work work, EqmCascadeT
   PetscCallMPI(MPI_Bcast(&result->energy, 1, MPIU_REAL, 0, hierarchy->comm));
   PetscCallMPI(MPI_Bcast(&result->objective, 1, MPIU_REAL, 0, hierarchy->comm));
   PetscCallMPI(MPI_Bcast(&result->before, 1, MPIU_REAL, 0, hierarchy->comm));
+  PetscCallMPI(MPI_Bcast(&result->epsilon, 1, MPIU_REAL, 0, hierarchy->comm));
   PetscFunctionReturn(0);
 }
 

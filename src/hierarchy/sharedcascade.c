@@ -36,7 +36,7 @@ static PetscErrorCode RelaxLevel(EqmShared shared, PetscInt k, EqmCascadeTarget 
 
 /* The coarsest shared level, which is the finest of the first rank's own. Collective. */
 static PetscErrorCode MapCoarsest(EqmShared shared, EqmLevelMap *map, EqmCascadeTarget target,
-                                  const EqmCascadeOptions *options)
+                                  EqmCascadeOptions *options)
 {
   const EqmSharedLevel *const last = &shared->level[shared->num_levels - 1];
   EqmCascadeOptions below = *options;
@@ -51,7 +51,9 @@ static PetscErrorCode MapCoarsest(EqmShared shared, EqmLevelMap *map, EqmCascade
   PetscCall(EqmHierarchyScatter(shared->coarser, map->dim, x, map->x));
   PetscCall(PetscFree(x));
   PetscCall(EqmSharedUpdateGhosts(last, map->dim, map->x));
-  map->epsilon = below.epsilon_finest;
+  options->epsilon = PetscMin(options->epsilon, result.epsilon);
+  options->epsilon_finest = PetscMin(options->epsilon_finest, result.epsilon);
+  map->epsilon = PetscMin(below.epsilon_finest, result.epsilon);
   PetscCall(Show(last, map, "coarsest", 0, options));
   PetscFunctionReturn(0);
 }
@@ -74,17 +76,18 @@ PetscErrorCode EqmSharedCascade(EqmShared shared, EqmCascadeTarget target, const
                                 PetscReal *x, EqmCascadeResult *result)
 {
   const PetscInt last = shared->num_levels - 1;
+  EqmCascadeOptions weighted = *options;
   EqmLevelMap map[EQM_MOST_LEVELS];
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k <= last; k++)
     PetscCall(EqmSharedMapCreate(&shared->level[k], target, k > 0 ? map[k - 1].x : x, &map[k]));
-  PetscCall(MapCoarsest(shared, &map[last], target, options));
+  PetscCall(MapCoarsest(shared, &map[last], target, &weighted));
   for (PetscInt k = last - 1; k >= 0; k--) {
     PetscInt hard;
     PetscCall(EqmSharedReinsert(&shared->level[k + 1], &map[k + 1], &shared->level[k], &map[k], &hard));
     PetscCall(EqmLevelMapDestroy(&map[k + 1]));
-    map[k].epsilon = k == 0 ? options->epsilon_finest : options->epsilon;
+    map[k].epsilon = k == 0 ? weighted.epsilon_finest : weighted.epsilon;
     PetscCall(Show(&shared->level[k], &map[k], "reinserted", hard, options));
     PetscCall(RelaxLevel(shared, k, target, options, &map[k]));
   }

@@ -62,6 +62,15 @@ static PetscErrorCode PrepareImage(Cascade *cascade, EqmProblem problem, const E
   PetscFunctionReturn(0);
 }
 
+/* Are areas no further from equal than before, or than a smooth map may have them? In strips and limbs that are far
+   longer than wide shear outweighs them, until its weight has fallen. */
+static PetscBool KeepsAreas(const EqmCascadeResult *result, const EqmImageTotals *before)
+{
+  const PetscReal close = 1e-3;
+
+  return (PetscBool)(result->energy <= PetscMax(before->energy, close * before->total));
+}
+
 /* The map after one relaxation, if it is better and has no folds; `gained`: by enough. */
 static PetscErrorCode Relax(Cascade *cascade, EqmProblem problem, EqmIterate iterate, PetscBool *better,
                             PetscBool *gained)
@@ -79,7 +88,8 @@ static PetscErrorCode Relax(Cascade *cascade, EqmProblem problem, EqmIterate ite
   PetscCall(EqmPlaceMakeFrames(problem->domain, &trial));
   PetscCall(EqmImageFolds(problem->domain, &trial, iterate->image, &folds));
   PetscCall(EqmDomainBoundaryInOrder(problem->domain, &trial, better));
-  *better = (PetscBool)(*better && folds == 0 && result.objective < result.before);
+  *better =
+      (PetscBool)(*better && folds == 0 && result.objective < result.before && KeepsAreas(&result, &iterate->totals));
   *gained = (PetscBool)(*better && result.objective < (1. - least_gain) * result.before);
   if (*better) PetscCall(EqmPlaceCopy(problem->domain, &trial, &iterate->place));
   PetscCall(EqmPlaceDestroy(&trial));

@@ -51,6 +51,7 @@ DISKS = {
     "spiral_wall": lambda: grid(13, 13, lambda i, j: not (j % 4 == 2 and (i < 11 if j % 8 == 2 else i > 0))),
     "strip": lambda: grid(500, 3, width=500.0),
     "long_strip": lambda: grid(2000, 3, width=2000.0),
+    "longest_strip": lambda: grid(50000, 3, width=50000.0),
     "ribbon": lambda: grid(300, 2, width=300.0),
     "needles": lambda: grid(9, 9, width=1e6),
     "graded": lambda: moved(PLAIN, lambda x, y, z: (x ** 12, y ** 12, z)),
