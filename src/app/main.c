@@ -138,14 +138,25 @@ static void StartWithoutDaemon(void)
   (void)setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
 }
 
+/* Will there be one thread, whatever the options say? */
+static PetscBool HasOneThread(char **argv)
+{
+  if (omp_get_max_threads() > 1 || getenv("PETSC_OPTIONS")) return PETSC_FALSE;
+  for (char **word = argv; *word; word++) {
+    if (strstr(*word, "threads") || strstr(*word, "options")) return PETSC_FALSE; /* a file of options may, too */
+  }
+  return PETSC_TRUE;
+}
+
 /* Threads that wait are to sleep, not to spin: on a busy machine spinning takes the cores from whoever works. The
-   OpenMP library reads this when it is loaded, so the program starts once more with it, unless the user has decided;
-   where it cannot, it goes on as it is. Under its own path: as /proc/self/exe its name would be exe to ps and pkill. */
+   OpenMP library reads this when it is loaded, so the program starts once more with it, unless the user has decided or
+   no thread will wait; where it cannot, it goes on as it is. Under its own path: as /proc/self/exe its name would be
+   exe to ps and pkill. */
 static void WaitPassively(char **argv)
 {
   char path[PETSC_MAX_PATH_LEN];
 
-  if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
+  if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT") || HasOneThread(argv)) return;
   if (setenv("OMP_WAIT_POLICY", "passive", 0)) return;
   const ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - 1);
   if (length <= 0) return;
