@@ -61,6 +61,8 @@ static PetscErrorCode Balance(EqmProblem problem, EqmIterate iterate)
 static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStartOptions *options)
 {
   EqmDomain const domain = problem->domain;
+  const EqmMeasureKind measure = domain->measure;
+  PetscErrorCode error;
 
   PetscFunctionBegin;
   PetscCall(EqmStartSphereCascade.run(problem, iterate, options));
@@ -68,8 +70,9 @@ static PetscErrorCode Run(EqmProblem problem, EqmIterate iterate, const EqmStart
   PetscCall(EqmIterateUpdate(problem, iterate));
   if (iterate->totals.folds > 0) PetscFunctionReturn(0);
   domain->measure = EQM_MEASURE_SOLID_ANGLE;
-  PetscCall(Balance(problem, iterate));
-  domain->measure = EQM_MEASURE_AREA3;
+  error = Balance(problem, iterate);
+  domain->measure = measure; /* also where the next start is tried after a failure of this one */
+  PetscCall(error);
   PetscFunctionReturn(0);
 }
 

@@ -106,7 +106,7 @@ int main(int argc, char **argv)
   PetscCall(EqmInitialize(&argc, &argv));
   PetscCall(TestSheets(1));
   PetscCall(TestSheets(3));
-  PetscCall(TestSheets(40));
+  PetscCall(TestSheets(12));
   PetscCall(EqmFinalize());
   PetscFunctionReturn(0);
 }
