@@ -5,11 +5,9 @@
 
 /* Larger fronts on one rank take half a gigabyte, and minutes that the other ranks wait. */
 enum { MOST_FRONT = 8000 };
-/* Operations of a factor per unknown, beyond which one set-up of multigrid and the solves with it cost less; scalar
-   Laplacians of solids come there at some hundred thousand vertices, those of surfaces never. */
-static const PetscReal most_flops = 8e5;
-/* The metrics of solids come there far earlier: not even an analysis would pay. */
-enum { MOST_IN_METRIC = 60000 };
+/* Unknowns of a solid's scalar Laplacian and of its metric, beyond which a set-up of multigrid and the solves with it
+   cost less than a factor, or than its ordering alone. On surfaces they never do. */
+enum { MOST_IN_SOLID = 50000, MOST_IN_METRIC = 60000 };
 /* Factors of fewer unknowns stay in the processor's cache whatever their precision. */
 enum { LEAST_SINGLE = 10000 };
 /* Relative residual of an iteration that stands for an exact solve. */
@@ -79,12 +77,12 @@ static PetscErrorCode FitsInMemory(EqmLinear linear, PetscReal limit, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* Would a factor, as far as it is known, cost more than multigrid? */
+/* Would a factor cost more than multigrid? */
 static PetscBool IsCostly(EqmLinear linear)
 {
   if (linear->use == EQM_MATRIX_METRIC) return (PetscBool)(linear->num_unknowns > MOST_IN_METRIC);
-  return (PetscBool)(linear->use == EQM_MATRIX_SCALAR &&
-                     linear->estimate.flops > most_flops * (PetscReal)linear->num_unknowns);
+  return (PetscBool)(linear->use == EQM_MATRIX_SCALAR && linear->mesh->cell_size == 4 &&
+                     linear->num_unknowns > MOST_IN_SOLID);
 }
 
 /* In the plane and on surfaces an exact Cholesky factor beats multigrid at every size that fits in memory. On one rank
@@ -100,15 +98,13 @@ static PetscErrorCode Choose(EqmLinear linear, EqmOrdering ordering, PetscReal l
   const EqmSolverKind *const direct = is_alone ? alone : together;
   const PetscBool is_large = (PetscBool)(linear->mesh->num_vertices > EQM_MOST_ON_ONE_RANK);
   const PetscInt num_direct = is_alone || (is_large && EqmInterfaceCanShare()) ? 1 : 2;
-  PetscBool costly = IsCostly(linear);
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < num_direct && !costly; k++) {
+  for (PetscInt k = 0; k < num_direct && !IsCostly(linear); k++) {
     PetscBool fits;
     PetscCall(Try(linear, ordering, direct[k]));
     PetscCall(FitsInMemory(linear, limit, &fits));
-    costly = IsCostly(linear);
-    if (fits && !costly && linear->estimate.largest_front_on_one <= MOST_FRONT) PetscFunctionReturn(0);
+    if (fits && linear->estimate.largest_front_on_one <= MOST_FRONT) PetscFunctionReturn(0);
     PetscCall(Release(linear));
   }
   PetscCall(Try(linear, ordering, EQM_SOLVER_MULTIGRID));
