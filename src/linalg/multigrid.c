@@ -2,11 +2,12 @@
    would not fit. The matrix gets as many rows for every vertex, identities where a vertex has fewer unknowns, so that
    aggregates are sets of vertices. */
 #include "linalg/linalg.h"
+#include "linalg/singlecycle.h"
 #include "mesh/mesh_private.h"
-#include <petscksp.h>
 
 typedef struct {
   KSP ksp;
+  EqmSingleCycle cycle; /* of a metric, where single precision will do; else NULL */
   Vec b, x;
   PetscInt block;       /* rows per vertex */
   PetscInt *row;        /* per owned unknown: which of this rank's rows */
@@ -173,6 +174,7 @@ static PetscErrorCode MakeIteration(EqmLinear linear)
   PC pc;
 
   PetscFunctionBegin;
+  PetscCall(EqmSingleCycleDestroy(&g->cycle));
   PetscCall(KSPDestroy(&g->ksp));
   PetscCall(KSPCreate(linear->mesh->comm, &g->ksp));
   PetscCall(KSPSetType(g->ksp, KSPCG));
@@ -211,6 +213,7 @@ static PetscErrorCode Factor(EqmLinear linear, PetscBool *success)
   PetscCall(SetUp(g->ksp, linear->mesh->size));
   PetscCall(PCGetFailedReason(pc, &failed));
   *success = (PetscBool)(failed == PC_NOERROR);
+  if (*success && linear->use == EQM_MATRIX_METRIC) PetscCall(EqmSingleCycleRenew(pc, &g->cycle));
   PetscFunctionReturn(0);
 }
 
@@ -235,7 +238,8 @@ static PetscErrorCode Solve(EqmLinear linear, PetscInt num_rhs, const PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* One cycle: with symmetric sweeps before and after it is a fixed symmetric definite operator. */
+/* One cycle, of a metric in single precision where that will do: with symmetric sweeps before and after it is a fixed
+ * symmetric definite operator. */
 static PetscErrorCode Apply(EqmLinear linear, PetscInt num_rhs, const PetscReal *b, PetscReal *x)
 {
   Multigrid *const g = linear->data;
@@ -245,7 +249,10 @@ static PetscErrorCode Apply(EqmLinear linear, PetscInt num_rhs, const PetscReal 
   PetscCall(KSPGetPC(g->ksp, &pc));
   for (PetscInt k = 0; k < num_rhs; k++) {
     PetscCall(Spread(linear, b + k * linear->num_owned, -1, g->b));
-    PetscCall(PCApply(pc, g->b, g->x));
+    if (g->cycle)
+      PetscCall(EqmSingleCycleApply(g->cycle, g->b, g->x));
+    else
+      PetscCall(PCApply(pc, g->b, g->x));
     PetscCall(Collect(linear, g->x, x + k * linear->num_owned));
   }
   PetscFunctionReturn(0);
@@ -257,6 +264,7 @@ static PetscErrorCode Destroy(EqmLinear linear)
 
   PetscFunctionBegin;
   PetscCall(VecDestroyVecs(g->num_fields, &g->fields));
+  PetscCall(EqmSingleCycleDestroy(&g->cycle));
   PetscCall(KSPDestroy(&g->ksp));
   PetscCall(VecDestroy(&g->b));
   PetscCall(VecDestroy(&g->x));
