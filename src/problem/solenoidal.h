@@ -21,7 +21,8 @@ PETSC_INTERN PetscErrorCode EqmSolenoidalDestroy(EqmSolenoidal *space);
    share of L is summed over some of the cells. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolenoidalFactor(EqmSolenoidal space, const EqmPlace *place, const PetscReal *weights,
                                                 PetscReal share);
-/* c = (P^T A P)^-1 P^T g, P the fields at the vertices of `place`, to whose frames the vector belongs. Collective. */
+/* c = (P^T A P)^-1 P^T g, P the fields at the vertices of `place`, the last factor's, to whose frames the vector
+   belongs. Collective. */
 PETSC_INTERN PetscErrorCode EqmSolenoidalSolve(EqmSolenoidal space, const EqmPlace *place, Vec g);
 /* h += P c, with what was solved last, at the same place. Not collective. */
 PETSC_INTERN PetscErrorCode EqmSolenoidalAdd(EqmSolenoidal space, const EqmPlace *place, Vec h);

@@ -281,6 +281,7 @@ PetscErrorCode EqmSolenoidalFactor(EqmSolenoidal space, const EqmPlace *place, c
   PetscCall(EqmEventBegin(mesh->ledger, EQM_EVENT_FACTOR));
   if (!space->factor) PetscCall(PetscMalloc1((size_t)space->size * (size_t)space->size, &space->factor));
   PetscCall(PetscArrayzero(space->factor, (size_t)space->size * (size_t)space->size));
+  PetscCall(EqmSolenoidalMakeParts(space, place->x));
   PetscCall(MakeTasks(&g));
   PetscCall(AddCells(&g));
   PetscCall(PetscFree3(g.cell, g.code, g.task));

@@ -9,6 +9,7 @@
    are not zero at a point. */
 #define EQM_SPLINE_STEP .4
 enum { EQM_SPLINE_SIDE = 9, EQM_SPLINES = 729, EQM_FIELDS_PER_SPLINE = 4, EQM_SPLINES_AT_POINT = 27 };
+enum { EQM_FIELDS_OF_PART = EQM_FIELDS_PER_SPLINE * EQM_SPLINES_AT_POINT };
 
 struct _p_EqmSolenoidal {
   EqmProblem problem;
@@ -16,8 +17,11 @@ struct _p_EqmSolenoidal {
   PetscInt num_splines;         /* of these */
   PetscInt size;                /* fields in all: the first of every spline, then the second, ... */
   PetscScalar *factor;          /* Cholesky's, size x size by columns; NULL before the first */
-  PetscReal *coefficient, *partial;
-  PetscReal *ambient; /* velocities in space, per owned vertex */
+  PetscReal *coefficient;
+  PetscReal *ambient;      /* velocities in space, per owned vertex */
+  PetscInt *vertex, *part; /* owned vertices, sorted; parts of the list, whose vertices meet the same splines */
+  PetscInt num_parts;
+  PetscReal *partial; /* sums over the parts */
 };
 
 /* Splines at x with their gradients: spline (base + (i, j, k) - 1) is number 9 i + 3 j + k. */
@@ -34,19 +38,30 @@ EQM_INLINE PetscInt EqmSplineBase(PetscReal x)
   return PetscMax(1 - half, PetscMin(half - 1, nearest));
 }
 
-/* In one direction: values and derivatives of three quadratic B-splines, the middle one `base` steps from the centre.
- */
+/* How many steps x lies behind it; half a step at most, as nothing is beyond the ball. */
+EQM_INLINE PetscReal EqmSplineOffset(PetscReal x, PetscInt base)
+{
+  return PetscMax(-.5, PetscMin(.5, x / EQM_SPLINE_STEP - (PetscReal)base));
+}
+
+/* There, values and derivatives of three quadratic B-splines; numbers or vectors. */
+#define EQM_SPLINES_OF_OFFSET(t, value, derivative)                                                                    \
+  do {                                                                                                                 \
+    (value)[0] = .5 * (.5 - (t)) * (.5 - (t));                                                                         \
+    (value)[1] = .75 - (t) * (t);                                                                                      \
+    (value)[2] = .5 * (.5 + (t)) * (.5 + (t));                                                                         \
+    (derivative)[0] = ((t)-.5) / EQM_SPLINE_STEP;                                                                      \
+    (derivative)[1] = -2. * (t) / EQM_SPLINE_STEP;                                                                     \
+    (derivative)[2] = ((t) + .5) / EQM_SPLINE_STEP;                                                                    \
+  } while (0)
+
+/* The same in one direction at x, the middle one `base` steps from the centre. */
 EQM_INLINE PetscInt EqmSplinesAlong(PetscReal x, PetscReal value[3], PetscReal derivative[3])
 {
   const PetscInt base = EqmSplineBase(x);
-  const PetscReal t = PetscMax(-.5, PetscMin(.5, x / EQM_SPLINE_STEP - (PetscReal)base)), step = EQM_SPLINE_STEP;
+  const PetscReal t = EqmSplineOffset(x, base);
 
-  value[0] = .5 * (.5 - t) * (.5 - t);
-  value[1] = .75 - t * t;
-  value[2] = .5 * (.5 + t) * (.5 + t);
-  derivative[0] = (t - .5) / step;
-  derivative[1] = -2. * t / step;
-  derivative[2] = (t + .5) / step;
+  EQM_SPLINES_OF_OFFSET(t, value, derivative);
   return base;
 }
 
@@ -94,5 +109,14 @@ EQM_INLINE void EqmSolenoidalAgainst(const EqmSplines *s, const PetscReal x[3], 
     product[3][m] = turn[0] * gx + turn[1] * gy + turn[2] * gz;
   }
 }
+
+/* Sort the owned vertices at x for the sums over them. Not collective. */
+PETSC_INTERN PetscErrorCode EqmSolenoidalMakeParts(EqmSolenoidal space, const PetscReal *x);
+/* coefficient = P^T a, of this rank's velocities, and a = P coefficient, P the fields at the vertices that have been
+   sorted. The same for any number of threads. Not collective. */
+PETSC_INTERN void EqmSolenoidalRestrict(EqmSolenoidal space, const PetscReal *x, const PetscReal *a,
+                                        PetscReal *coefficient);
+PETSC_INTERN void EqmSolenoidalProlong(EqmSolenoidal space, const PetscReal *x, const PetscReal *coefficient,
+                                       PetscReal *a);
 
 #endif
