@@ -53,10 +53,6 @@ static PetscInt ListRow(const EqmBlocks *blocks, const EqmSingleRows *rows, Pets
 {
   PetscInt n = 0;
 
-  if (with_diagonal) {
-    seen[i] = i;
-    column[n++] = i;
-  }
   for (int part = 0; part < 2 && blocks->block[part]; part++) {
     for (PetscInt q = blocks->start[part][SIDE * i]; q < blocks->start[part][SIDE * (i + 1)]; q++) {
       const PetscInt block = BlockOf(rows, part, blocks->column[part][q]);
@@ -65,6 +61,7 @@ static PetscInt ListRow(const EqmBlocks *blocks, const EqmSingleRows *rows, Pets
       column[n++] = block;
     }
   }
+  if (with_diagonal && seen[i] != i) column[n++] = i;
   return n;
 }
 
@@ -91,7 +88,10 @@ PetscErrorCode EqmSingleRowsCreate(Mat matrix, PetscBool with_diagonal, EqmSingl
   for (PetscInt c = 0; c < n; c++) seen[c] = -1;
   for (PetscInt i = 0; i < rows->num_rows; i++) {
     PetscInt *const mine = rows->column + rows->start[i];
-    PetscCall(PetscSortInt(ListRow(&blocks, rows, i, with_diagonal, seen, mine), mine));
+    const PetscInt length_of_row = ListRow(&blocks, rows, i, with_diagonal, seen, mine);
+    PetscBool sorted; /* as a rule */
+    PetscCall(PetscSortedInt(length_of_row, mine, &sorted));
+    if (!sorted) PetscCall(PetscSortInt(length_of_row, mine));
   }
   PetscCall(EqmBlocksRestore(&blocks));
   PetscCall(PetscFree2(seen, column));
