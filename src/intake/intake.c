@@ -8,49 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Prefix of a report: the name of the mesh, if there are two. */
-#define OF_PART(part) (part) ? (part) : "", (part) ? ": " : ""
-
-/* Print the lines of a text that begin with `head`. Collective. */
-static PetscErrorCode PrintLinesWith(MPI_Comm comm, const char *part, const char *head, const char *text)
-{
-  PetscFunctionBegin;
-  for (const char *line = text; line && *line;) {
-    const char *const end = strchr(line, '\n');
-    const int width = (int)(end ? end - line : (ptrdiff_t)strlen(line));
-
-    if (!strncmp(line, head, strlen(head))) PetscCall(PetscPrintf(comm, "%s%s%.*s\n", OF_PART(part), width, line));
-    line = end ? end + 1 : NULL;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The changes of a repair, in one line; `part` as in EqmIntakeOptions. Collective. */
-PetscErrorCode EqmPrintRepair(MPI_Comm comm, const char *part, const EqmRepair *repair)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscPrintf(comm,
-                        "%s%srepair: %" PetscInt64_FMT " twins and %" PetscInt64_FMT
-                        " cells with a repeated vertex removed, %" PetscInt64_FMT " cells turned, %" PetscInt64_FMT
-                        " cells split with %" PetscInt64_FMT " new vertices\n",
-                        OF_PART(part), repair->duplicate_cells_removed, repair->degenerate_cells_removed,
-                        repair->cells_flipped, repair->cells_split, repair->vertices_added));
-  PetscFunctionReturn(0);
-}
-
-/* The steps of a preparation, a line each. Collective. */
-PetscErrorCode EqmPrintPreparation(MPI_Comm comm, const char *part, const EqmPreparation *preparation)
-{
-  PetscFunctionBegin;
-  for (PetscInt s = 0; s < preparation->num_steps; s++) {
-    const EqmPreparedStep *const step = &preparation->step[s];
-
-    if (!strcmp(step->step, "repair")) continue; /* has a line of its own, also where it changed nothing */
-    PetscCall(PetscPrintf(comm, "%s%sprepared: %s: %s\n", OF_PART(part), step->step, step->what));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* The prepared mesh is mapped, if it is another than the given one. */
 static PetscErrorCode Adopt(EqmIntake *intake)
 {
@@ -251,11 +208,11 @@ PetscErrorCode EqmIntakeRead(MPI_Comm comm, const EqmIntakeOptions *options, Eqm
     PetscCall(PetscPrintf(comm,
                           "%s%snote: the map is made for the parts of the %" PetscInt64_FMT
                           " cells that were split; they themselves are measured afterwards\n",
-                          OF_PART(options->part), intake->repair.cells_split));
+                          EQM_OF_PART(options->part), intake->repair.cells_split));
   }
   PetscCall(EqmIntakeDiagnose(options->target, PETSC_TRUE, intake, &fatal, text, sizeof(text)));
   if (fatal) PetscCall(Refuse(intake, options, text));
-  if (!options->quiet) PetscCall(PrintLinesWith(comm, options->part, "warning: ", text));
+  if (!options->quiet) PetscCall(EqmPrintLinesWith(comm, options->part, "warning: ", text));
   PetscCall(EqmPhaseEnd(ledger, EQM_PHASE_DIAGNOSE));
   if (options->checkpoint) PetscCall(Keep(plain, intake->unit, options, ledger));
   if (plain != intake->given) PetscCall(EqmSoupDestroy(&plain));

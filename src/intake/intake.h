@@ -74,6 +74,7 @@ PETSC_INTERN PetscErrorCode EqmIntakeMeasureCells(EqmSoup given, EqmLedger ledge
 PETSC_INTERN PetscErrorCode EqmIntakeMeasureGiven(const EqmIntake *intake, EqmLedger ledger, EqmMap found, EqmMap map);
 /* ---- intake.c */
 PETSC_INTERN PetscErrorCode EqmIntakeDestroy(EqmIntake *intake);
+/* ---- told.c */
 PETSC_INTERN PetscErrorCode EqmPrintRepair(MPI_Comm comm, const char *part, const EqmRepair *repair);
 PETSC_INTERN PetscErrorCode EqmPrintPreparation(MPI_Comm comm, const char *part, const EqmPreparation *preparation);
 

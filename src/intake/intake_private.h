@@ -19,4 +19,9 @@ PETSC_INTERN PetscErrorCode EqmIntakePrepareRest(const EqmPrepareOptions *option
 PETSC_INTERN PetscErrorCode EqmIntakeDiagnose(const char *wanted, PetscBool with_places, EqmIntake *intake,
                                               PetscBool *fatal, char *text, size_t length);
 
+/* Prefix of a report: the name of the mesh, if there are two. */
+#define EQM_OF_PART(part) (part) ? (part) : "", (part) ? ": " : ""
+/* ---- told.c: print the lines of a text that begin with `head`. Collective. */
+PETSC_INTERN PetscErrorCode EqmPrintLinesWith(MPI_Comm comm, const char *part, const char *head, const char *text);
+
 #endif
