@@ -203,7 +203,7 @@ static PetscErrorCode ReadRows(EqmInput *in, Plan *plan, PetscInt64 before, Pets
     if (section->kind)
       EqmTry(EqmMeditReadCells(plan->builder, section->kind, plan->num_vertices, high - low));
     else
-      EqmTry(EqmMeditReadVertices(plan->builder, plan->dimension, high - low));
+      EqmTry(EqmMeditReadVertices(plan->builder, section->width - 1, high - low));
     at = first + (high - low) * section->width;
   }
   return 0;

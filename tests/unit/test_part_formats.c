@@ -140,7 +140,7 @@ static PetscErrorCode TestMedit(Text *text)
   *text = (Text){.end = "\n"};
   Line(text, "# made\nMeshVersionFormatted 2 Dimension\n\n2\nVertices 400");
   for (int v = 0; v < 400; v++) Line(text, v % 3 ? "%d %d 0" : "%d # nan 7\n%d\n 1", v / 20, v % 20);
-  Line(text, "Corners\n4\n1 2 3 nan\nNormals 1 End.5 0\nTrianglesP2 0\nQuadrilaterals\n# so many:\n361");
+  Line(text, "Dimension 3\nCorners\n4\n1 2 3 nan\nNormals 1 End.5 0\nTrianglesP2 0\nQuadrilaterals\n# so many:\n361");
   for (int v = 0; v < 380; v++) {
     if (v % 20 < 19) Line(text, "%d %d %d %d %d", v + 1, v + 21, v + 22, v + 2, v % 7);
   }
