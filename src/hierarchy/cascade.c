@@ -206,7 +206,7 @@ static PetscErrorCode RelaxFinest(EqmHierarchy hierarchy, EqmCascadeTarget targe
 
   PetscFunctionBegin;
   PetscCall(CreateMaps(hierarchy, target, x, map));
-  map[0].epsilon = options->epsilon_finest;
+  map[0].epsilon = result->epsilon = options->epsilon_finest;
   PetscCall(EqmLevelMapEvaluate(&map[0], map[0].x, &value));
   result->before = value.objective;
   if (value.folds == 0) PetscCall(RelaxLevel(&map[0], hierarchy->num_levels - 1, options));

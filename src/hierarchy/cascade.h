@@ -25,7 +25,7 @@ typedef struct {
   PetscInt folds; /* of the finest map: triangles that arithmetic cannot tell from folded ones included */
   PetscReal energy, objective;
   PetscReal before;  /* the objective of the map that was given; infinite: it folds, or there was none */
-  PetscReal epsilon; /* EqmCascade: the weight that the angles had, as wanted or less */
+  PetscReal epsilon; /* the weight that the angles had: as wanted, or less */
 } EqmCascadeResult;
 
 PETSC_INTERN PetscErrorCode EqmCascadeOptionsDefault(EqmCascadeOptions *options);

@@ -65,7 +65,7 @@ static PetscErrorCode RunShared(EqmRelaxer relaxer, const EqmCascadeOptions *opt
 
   PetscFunctionBegin;
   PetscCall(TakePlaces(relaxer, x));
-  map->epsilon = options->epsilon_finest;
+  map->epsilon = result->epsilon = options->epsilon_finest;
   PetscCall(EqmSharedRelaxationRun(relaxer->relaxation, options, &value));
   result->before = value.objective;
   PetscCall(EqmSharedEvaluate(finest, map, map->x, &value));

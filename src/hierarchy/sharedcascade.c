@@ -51,7 +51,7 @@ static PetscErrorCode MapCoarsest(EqmShared shared, EqmLevelMap *map, EqmCascade
   PetscCall(EqmHierarchyScatter(shared->coarser, map->dim, x, map->x));
   PetscCall(PetscFree(x));
   PetscCall(EqmSharedUpdateGhosts(last, map->dim, map->x));
-  options->epsilon = PetscMin(options->epsilon, result.epsilon);
+  options->epsilon = result.epsilon; /* no more than it was */
   options->epsilon_finest = PetscMin(options->epsilon_finest, result.epsilon);
   map->epsilon = PetscMin(below.epsilon_finest, result.epsilon);
   PetscCall(Show(last, map, "coarsest", 0, options));
@@ -92,6 +92,7 @@ PetscErrorCode EqmSharedCascade(EqmShared shared, EqmCascadeTarget target, const
     PetscCall(RelaxLevel(shared, k, target, options, &map[k]));
   }
   result->before = INFINITY;
+  result->epsilon = weighted.epsilon;
   PetscCall(TakeFinest(shared, &map[0], x, result));
   PetscCall(EqmLevelMapDestroy(&map[0]));
   PetscFunctionReturn(0);
