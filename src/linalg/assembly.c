@@ -77,6 +77,29 @@ static PetscInt MostEntries(const EqmAssembly assembly, const EqmGraph *graph, P
   return entries;
 }
 
+/* Give the matrix these rows; on one rank without setting entry by entry. Values come with EqmAssemblyFill. */
+static PetscErrorCode TakePattern(Mat matrix, PetscInt num_rows, const PetscInt *row_start, PetscInt *column)
+{
+  PetscMPIInt size;
+  PetscInt *length;
+
+  PetscFunctionBegin;
+  PetscCall(MatSetType(matrix, MATAIJ));
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)matrix), &size));
+  if (size > 1) {
+    PetscCall(MatMPIAIJSetPreallocationCSR(matrix, row_start, column, NULL));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscMalloc1(num_rows, &length));
+  for (PetscInt i = 0; i < num_rows; i++) length[i] = row_start[i + 1] - row_start[i];
+  PetscCall(MatSeqAIJSetPreallocation(matrix, 0, length));
+  PetscCall(PetscFree(length));
+  PetscCall(MatSeqAIJSetColumnIndices(matrix, column));
+  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MakePattern(EqmAssembly assembly)
 {
   const EqmMesh mesh = assembly->mesh;
@@ -95,9 +118,7 @@ static PetscErrorCode MakePattern(EqmAssembly assembly)
   PetscCall(EqmGraphReset(&graph));
   PetscCall(MatCreate(mesh->comm, &assembly->matrix));
   PetscCall(MatSetSizes(assembly->matrix, unknowns->num_owned, unknowns->num_owned, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(assembly->matrix, MATAIJ));
-  PetscCall(MatSeqAIJSetPreallocationCSR(assembly->matrix, row_start, column, NULL));
-  PetscCall(MatMPIAIJSetPreallocationCSR(assembly->matrix, row_start, column, NULL));
+  PetscCall(TakePattern(assembly->matrix, unknowns->num_owned, row_start, column));
   PetscCall(PetscFree4(row_start, column, list, first));
   PetscFunctionReturn(0);
 }

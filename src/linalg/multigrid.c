@@ -1,6 +1,7 @@
 /* Conjugate gradients with smoothed aggregation (P. Vanek, J. Mandel, M. Brezina, Computing 56, 1996), where a factor
    would not fit. The matrix gets as many rows for every vertex, identities where a vertex has fewer unknowns, so that
-   aggregates are sets of vertices. */
+   aggregates are sets of vertices. One cycle on its own, a metric's, does as well on aggregates that are not smoothed
+   (singlecycle.h), which cost a fraction to set up. */
 #include "linalg/linalg.h"
 #include "linalg/singlecycle.h"
 #include "mesh/mesh_private.h"
@@ -153,6 +154,25 @@ static const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "ric
                                           {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"},
                                           {"-matptap_via", "backend"}};
 
+/* Of a metric: no smoothed aggregates, but small ones, as its coarse matrices are sparse. PETSc 3.19 has a new name for
+   the squares of graphs that aggregates are made from. */
+static const char *const metric_defaults[][2] = {{"-multigrid_pc_gamg_agg_nsmooths", "0"},
+                                                 {"-multigrid_pc_gamg_square_graph", "0"},
+                                                 {"-multigrid_pc_gamg_aggressive_coarsening", "0"}};
+
+/* Take what the options database says. */
+static PetscErrorCode SetFromOptions(KSP ksp, EqmMatrixUse use)
+{
+  const PetscInt count = (PetscInt)(sizeof(metric_defaults) / sizeof(metric_defaults[0]));
+  PetscOptions options;
+
+  PetscFunctionBegin;
+  PetscCall(EqmOptionsPushDefaults(metric_defaults, use == EQM_MATRIX_METRIC ? count : 0, &options));
+  PetscCall(KSPSetFromOptions(ksp));
+  PetscCall(EqmOptionsPopDefaults(&options));
+  PetscFunctionReturn(0);
+}
+
 /* Set up all levels. */
 static PetscErrorCode SetUp(KSP ksp, PetscMPIInt size)
 {
@@ -182,7 +202,7 @@ static PetscErrorCode MakeIteration(EqmLinear linear)
   PetscCall(KSPGetPC(g->ksp, &pc));
   PetscCall(PCSetType(pc, PCGAMG));
   PetscCall(KSPSetOptionsPrefix(g->ksp, "multigrid_"));
-  PetscCall(KSPSetFromOptions(g->ksp));
+  PetscCall(SetFromOptions(g->ksp, linear->use));
   PetscFunctionReturn(0);
 }
 

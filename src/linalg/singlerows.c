@@ -153,6 +153,13 @@ PetscErrorCode EqmSingleRowsFill(Mat matrix, EqmSingleRows *rows, PetscBool *fin
   PetscFunctionReturn(0);
 }
 
+void EqmSingleRowsScale(float factor, EqmSingleRows *rows)
+{
+  const PetscInt count = EQM_SINGLE_BLOCK * rows->start[rows->num_rows];
+
+  for (PetscInt k = 0; k < count; k++) rows->entry[k] *= factor;
+}
+
 /* ---- products */
 
 PetscErrorCode EqmSingleRowsUpdateGhosts(const EqmSingleRows *rows, float *x)

@@ -25,6 +25,8 @@ PETSC_INTERN PetscErrorCode EqmSingleRowsDestroy(EqmSingleRows *rows);
 /* Take the entries of a matrix of that pattern, whose columns may have been reordered within rows since. `finite` is
    false on a rank where some are none in single precision. Not collective. */
 PETSC_INTERN PetscErrorCode EqmSingleRowsFill(Mat matrix, EqmSingleRows *rows, PetscBool *finite);
+/* Multiply all entries. Not collective. */
+PETSC_INTERN void EqmSingleRowsScale(float factor, EqmSingleRows *rows);
 /* Other ranks' numbers behind this rank's. Collective. */
 PETSC_INTERN PetscErrorCode EqmSingleRowsUpdateGhosts(const EqmSingleRows *rows, float *x);
 /* y = A x, or y += A x. Not collective. */
