@@ -154,10 +154,9 @@ static const char *const defaults[][2] = {{"-multigrid_mg_levels_ksp_type", "ric
                                           {"-multigrid_mg_levels_pc_sor_diagonal_shift", "1e-100"},
                                           {"-matptap_via", "backend"}};
 
-/* Of a metric: no smoothed aggregates, but small ones, as its coarse matrices are sparse. PETSc 3.19 has a new name for
-   the squares of graphs that aggregates are made from. */
+/* Of a metric: no smoothed aggregates, but small ones, not made from squares of graphs, as coarse matrices stay sparse.
+ */
 static const char *const metric_defaults[][2] = {{"-multigrid_pc_gamg_agg_nsmooths", "0"},
-                                                 {"-multigrid_pc_gamg_square_graph", "0"},
                                                  {"-multigrid_pc_gamg_aggressive_coarsening", "0"}};
 
 /* Take what the options database says. */
