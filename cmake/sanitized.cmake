@@ -11,3 +11,5 @@ foreach(property INCLUDE_DIRECTORIES COMPILE_DEFINITIONS COMPILE_OPTIONS LINK_LI
 endforeach()
 target_compile_options(libequimap_sanitized PUBLIC ${flags})
 target_link_options(libequimap_sanitized PUBLIC ${flags})
+# Half of a compilation is PETSc's headers. The library itself is compiled without, so that a missing include is found.
+target_precompile_headers(libequimap_sanitized PRIVATE <petscksp.h>)

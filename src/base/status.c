@@ -99,7 +99,10 @@ static PetscErrorCode HandleError(MPI_Comm comm, int line, const char *function,
 PetscErrorCode EqmInitialize(int *argc, char ***argv)
 {
   PetscFunctionBegin;
-  PetscCall(PetscPushErrorHandler(HandleError, NULL)); /* what fails in the next line deserves a sentence, too */
+  if (PetscPushErrorHandler(HandleError, NULL)) { /* what fails from here on deserves a sentence, too */
+    (void)fputs("equimap: out of memory at the very beginning\n", stderr);
+    return PETSC_ERR_MEM;
+  }
   PetscCall(PetscInitialize(argc, argv, NULL, NULL));
   EqmStopRemoveTemporaries();
   PetscCall(EqmWatchEnds());

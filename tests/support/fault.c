@@ -4,6 +4,7 @@
    FAULT_SIGNAL=N@K     the K-th time that a phase begins, the process sends itself signal N
    FAULT_NAN=K          the K-th sum of reals over all ranks is no number, on every rank
    FAULT_RANK=R         the first two on this rank alone (default: 0), whose number the launcher gives
+   FAULT_TRACE=1        the callers of the allocation that fails are printed
    FAULT_REPORT=FILE    how many places, phases and sums were counted is appended there when the process ends
 
    A place is the stack of the innermost callers: a small run has some thousand places, not millions of allocations.
@@ -21,6 +22,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { DEPTH = 10, SLOTS = 1 << 18 };
 
@@ -62,8 +64,8 @@ static int IsNew(void *const *stack, int depth)
   return 1;
 }
 
-/* Called for every allocation, with the address that it returns to. */
-static int MustFail(void *caller)
+/* Called for every allocation, with the address that it returns to. Never inlined: two frames of the stack are ours. */
+__attribute__((noinline)) static int MustFail(void *caller)
 {
   void *stack[DEPTH];
   int fails = 0;
@@ -76,6 +78,7 @@ static int MustFail(void *caller)
     pthread_mutex_lock(&lock);
     if (places < SLOTS / 2 && IsNew(stack + 2, depth - 2)) fails = ++places == bad_allocation;
     pthread_mutex_unlock(&lock);
+    if (fails && getenv("FAULT_TRACE")) backtrace_symbols_fd(stack, depth, STDERR_FILENO);
   }
   inside = 0;
   if (fails) errno = ENOMEM;
