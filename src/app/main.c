@@ -3,6 +3,7 @@
 #include "commandline.h"
 #include "commands.h"
 #include "optionsfile.h"
+#include "h5/load.h"
 #include <omp.h>
 #include <signal.h>
 #include <stdio.h>
@@ -164,6 +165,12 @@ static void WaitPassively(char **argv)
   (void)execv(path, argv);
 }
 
+static int RefuseForMemory(int rank)
+{
+  if (rank == 0) (void)fputs("equimap: out of memory at the very beginning\n", stderr);
+  return EQM_STATUS_INTERNAL;
+}
+
 int main(int argc, char **argv)
 {
   EqmCommandLine line = {0};
@@ -174,12 +181,10 @@ int main(int argc, char **argv)
   int num_options;
   char **options;
 
-  if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) {
-    if (rank == 0) (void)fputs("equimap: out of memory at the very beginning\n", stderr);
-    return EQM_STATUS_INTERNAL;
-  }
+  if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return RefuseForMemory(rank);
   if (line.version || !line.command) return EqmIntroduce(&line, rank);
   WaitPassively(argv);
+  if (!EqmH5Load()) return RefuseForMemory(rank);
   if (!launched) StartWithoutDaemon();
   argc = num_options;
   argv = options;

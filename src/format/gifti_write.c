@@ -6,6 +6,7 @@
 #include "gifti.h"
 #include "metadata.h"
 #include "scalar.h"
+#include "xml.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -236,10 +237,13 @@ static PetscErrorCode WriteDocument(Document *document, const EqmSerialMesh *mes
 static PetscErrorCode WriteFile(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                 PetscInt num_fields, char *error, size_t error_length)
 {
-  xmlOutputBufferPtr buffer = xmlOutputBufferCreateIO(WriteToFile, NULL, file, NULL);
-  Document document = {buffer ? xmlNewTextWriter(buffer) : NULL, file, PETSC_FALSE};
+  xmlOutputBufferPtr buffer;
+  Document document = {NULL, file, PETSC_FALSE};
   PetscErrorCode code;
 
+  EqmXmlQuiet();
+  buffer = xmlOutputBufferCreateIO(WriteToFile, NULL, file, NULL);
+  if (buffer) document.xml = xmlNewTextWriter(buffer);
   if (!document.xml) return PETSC_ERR_MEM;
   code = WriteDocument(&document, mesh, fields, num_fields);
   xmlFreeTextWriter(document.xml);

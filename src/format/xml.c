@@ -7,6 +7,19 @@
 #include <string.h>
 #include <libxml/parser.h>
 
+static void Ignore(void *context, const char *format, ...)
+{
+  (void)context;
+  (void)format;
+}
+
+/* EqmXmlQuiet - libxml2 prints nothing by itself, whatever fails: its callers have their own sentences. Not collective.
+ */
+void EqmXmlQuiet(void)
+{
+  xmlSetGenericErrorFunc(NULL, Ignore);
+}
+
 /* Entities are a way to make a small file use all memory; no mesh needs them. The parser itself reports their
    declarations, whatever encoding the file has. A document type without declarations, as GIFTI files have it, is fine.
  */
@@ -39,6 +52,7 @@ PetscErrorCode EqmXmlParse(EqmInput *in, const char *text, size_t length, xmlDoc
   PetscBool has_entities = PETSC_FALSE;
   PetscErrorCode code = 0;
 
+  EqmXmlQuiet();
   *document = NULL;
   if (length > INT_MAX)
     return EqmReject(in, EQM_ERR_IO, "more than 2 GB of XML: save with appended raw data, or as HDF5");

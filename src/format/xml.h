@@ -13,6 +13,7 @@ typedef struct {
   xmlChar *owned; /* to be freed, or NULL */
 } EqmXmlText;
 
+PETSC_INTERN void EqmXmlQuiet(void);
 PETSC_INTERN PetscErrorCode EqmXmlParse(EqmInput *in, const char *text, size_t length, xmlDocPtr *document);
 PETSC_INTERN xmlNodePtr EqmXmlChild(xmlNodePtr parent, const char *name);
 PETSC_INTERN xmlNodePtr EqmXmlNext(xmlNodePtr node, const char *name);

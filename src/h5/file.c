@@ -1,5 +1,6 @@
 /* Open, create, commit and abandon HDF5 files. */
 #include "h5/h5.h"
+#include "h5/load.h"
 #include "base/temporaries.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -17,6 +18,15 @@ static PetscErrorCode EndQuietly(void)
   return 0;
 }
 
+/* EqmH5Load - HDF5 begins. Not collective. Where MPI has not begun yet, HDF5 will not clean up when MPI ends: that
+   crashes where an allocation of its own has failed before, even one that it did not report. All files are closed by
+   us. Returns whether it could begin. */
+PetscBool EqmH5Load(void)
+{
+  (void)H5dont_atexit();
+  return (PetscBool)(H5open() >= 0);
+}
+
 /* Once per process. */
 static PetscErrorCode Prepare(void)
 {
@@ -25,7 +35,7 @@ static PetscErrorCode Prepare(void)
   PetscFunctionBegin;
   if (is_done) PetscFunctionReturn(0);
   is_done = PETSC_TRUE;
-  (void)H5dont_atexit(); /* its cleaning up crashes where it has run out of memory; all files are closed by us */
+  PetscCheck(EqmH5Load(), PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory: HDF5 cannot begin");
   PetscCall(PetscRegisterFinalize(EndQuietly));
   PetscFunctionReturn(0);
 }
@@ -44,7 +54,7 @@ static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, 
   PetscCallMPI(MPI_Comm_rank(comm, &h5->rank));
   PetscCall(PetscStrncpy(h5->name, name, sizeof(h5->name)));
   (void)H5Eget_auto2(H5E_DEFAULT, &h5->printer, &h5->printer_data);
-  (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  (void)H5Eset_auto2(H5E_DEFAULT, EqmH5NoteFailure, NULL);
   *out = h5;
   PetscFunctionReturn(0);
 }

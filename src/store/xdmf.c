@@ -4,6 +4,7 @@
 #include "mesh/soup_private.h"
 #include "store/store.h"
 #include "format/hdf5.h"
+#include "format/xml.h"
 #include "base/atomicfile.h"
 #include <errno.h>
 #include <libxml/xmlwriter.h>
@@ -172,8 +173,10 @@ typedef struct {
 static void Print(EqmAtomicFile *file, void *context)
 {
   const Contents *const c = context;
-  const xmlBufferPtr buffer = xmlBufferCreate();
+  xmlBufferPtr buffer;
 
+  EqmXmlQuiet();
+  buffer = xmlBufferCreate();
   if (buffer && Compose(c->map, c->result, c->body, c->num_frames, buffer))
     EqmAtomicWrite(file, xmlBufferContent(buffer), (size_t)xmlBufferLength(buffer));
   else
