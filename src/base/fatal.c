@@ -45,19 +45,18 @@ void EqmEndAllRanks(void)
   _exit(EQM_STATUS_INTERNAL); /* alone: without the launcher's lines about an abort */
 }
 
-/* PETSc's message may be no sentence: the name of a function, or a number of bytes. */
+/* PETSc's message may be no sentence: the name of a function, a number of bytes, or a blank. */
 static void SayOutOfMemory(int rank, const char *message)
 {
-  const char *const sentence =
-      message && strchr(message, ' ') && strncmp(message, "Memory requested", 16) ? message : NULL;
+  const char *const text = message && strcmp(message, " ") ? message : NULL;
 
-  if (sentence)
-    (void)fprintf(stderr, "equimap: %s\n", sentence);
+  if (text && strchr(text, ' ') && strncmp(text, "Memory requested", 16))
+    (void)fprintf(stderr, "equimap: %s\n", text);
   else
     (void)fprintf(stderr,
                   "equimap: out of memory on rank %d%s%s%s; use more ranks or nodes, a smaller mesh, or raise the "
                   "limit (ulimit -v)\n",
-                  rank, message ? " (" : "", message ? message : "", message ? ")" : "");
+                  rank, text ? " (" : "", text ? text : "", text ? ")" : "");
 }
 
 PetscErrorCode EqmFailForMemory(MPI_Comm comm, PetscErrorCode code, PetscErrorType type, const char *message)
