@@ -3,6 +3,7 @@
 #include "commandline.h"
 #include "commands.h"
 #include "optionsfile.h"
+#include "base/fatal.h"
 #include "h5/load.h"
 #include <omp.h>
 #include <signal.h>
@@ -168,6 +169,7 @@ static void WaitPassively(char **argv)
 static int RefuseForMemory(int rank)
 {
   if (rank == 0) (void)fputs("equimap: out of memory at the very beginning\n", stderr);
+  EqmForgetEnds();
   return EQM_STATUS_INTERNAL;
 }
 
@@ -184,6 +186,7 @@ int main(int argc, char **argv)
   if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return RefuseForMemory(rank);
   if (line.version || !line.command) return EqmIntroduce(&line, rank);
   WaitPassively(argv);
+  EqmWatchExits(); /* HDF5 without memory exits */
   if (!EqmH5Load()) return RefuseForMemory(rank);
   if (!launched) StartWithoutDaemon();
   argc = num_options;

@@ -17,7 +17,7 @@ PetscBool EqmIsOutOfMemory(const char *function, PetscErrorCode code, PetscError
   return (PetscBool)(function && (!strcmp(function, "PetscMallocAlign") || !strcmp(function, "PetscReallocAlign")));
 }
 
-static PetscBool is_running = PETSC_FALSE; /* between EqmWatchEnds and EqmForgetEnds */
+static PetscBool is_running = PETSC_FALSE; /* between EqmWatchExits and EqmForgetEnds */
 
 /* The first errors may come before MPI has begun. */
 static void WhereAmI(MPI_Comm comm, int *rank, int *size)
@@ -99,14 +99,22 @@ static void Crash(int signal_number)
   EqmEndAllRanks();
 }
 
+void EqmWatchExits(void)
+{
+  static PetscBool is_done = PETSC_FALSE;
+
+  is_running = PETSC_TRUE;
+  if (!is_done) (void)atexit(ExitOfALibrary);
+  is_done = PETSC_TRUE;
+}
+
 PetscErrorCode EqmWatchEnds(void)
 {
   static const int signals[] = {SIGSEGV, SIGBUS, SIGILL, SIGFPE};
   PetscBool without;
 
   PetscFunctionBegin;
-  is_running = PETSC_TRUE;
-  (void)atexit(ExitOfALibrary);
+  EqmWatchExits();
   PetscCall(PetscOptionsHasName(NULL, NULL, "-no_signal_handler", &without));
   if (without) PetscFunctionReturn(0);
   for (size_t k = 0; k < sizeof(signals) / sizeof(signals[0]); k++) (void)signal(signals[k], Crash);

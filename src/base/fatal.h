@@ -17,8 +17,11 @@ PETSC_INTERN PetscErrorCode EqmFailForMemory(MPI_Comm comm, PetscErrorCode code,
 /* End all ranks with exit code 1; temporary files are removed. Not collective. */
 PETSC_INTERN void EqmEndAllRanks(void) __attribute__((noreturn));
 
-/* From now until EqmForgetEnds a crash, and an exit that a library calls, end all ranks so, with a sentence; a crash
-   not under -no_signal_handler. Once. Not collective. */
+/* From now until EqmForgetEnds an exit that a library calls ends all ranks so, with a sentence; MPI need not have
+   begun. Not collective. */
+PETSC_INTERN void EqmWatchExits(void);
+
+/* A crash, too, unless -no_signal_handler is given. Once. Not collective. */
 PETSC_INTERN PetscErrorCode EqmWatchEnds(void);
 PETSC_INTERN void EqmForgetEnds(void);
 

@@ -101,6 +101,7 @@ PetscErrorCode EqmInitialize(int *argc, char ***argv)
   PetscFunctionBegin;
   if (PetscPushErrorHandler(HandleError, NULL)) { /* what fails from here on deserves a sentence, too */
     (void)fputs("equimap: out of memory at the very beginning\n", stderr);
+    EqmForgetEnds();
     return PETSC_ERR_MEM;
   }
   PetscCall(PetscInitialize(argc, argv, NULL, NULL));
