@@ -40,7 +40,6 @@ find_launcher() {
   if [ "$(id -u)" -eq 0 ]; then
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
   fi
-  export GLIBC_TUNABLES=${GLIBC_TUNABLES:-glibc.malloc.hugetlb=1} # large pages, for a tenth of the time
   launcher=(mpirun -n "$ranks" --bind-to none)
   [ -z "${EQUIMAP_MPIRUN:-}" ] || read -ra launcher <<<"${EQUIMAP_MPIRUN//%n/$ranks}"
   # TERM goes to every process of a job. Of it mpirun ends the ranks, and itself, at once; deaf, it waits for their checkpoint.

@@ -2,9 +2,10 @@
 #include "catalogue.h"
 #include "commandline.h"
 #include "commands.h"
+#include "environment.h"
+#include "loading.h"
 #include "optionsfile.h"
 #include "base/fatal.h"
-#include "h5/load.h"
 #include <omp.h>
 #include <signal.h>
 #include <stdio.h>
@@ -130,47 +131,17 @@ static int RankOfLauncher(PetscBool *launched)
   return 0;
 }
 
-/* Alone, Open MPI would first start a daemon, which takes longer than a small map. Without the daemon all such runs of
-   a user have one folder for temporary files, which the first that ends removes from under the others: no folder, then,
-   and no shared file pointers, which would lie there and which we do not use. What the user has set stays. */
-static void StartWithoutDaemon(void)
-{
-  (void)setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-  (void)setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
-  (void)setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
-}
-
-/* Will there be one thread, whatever the options say? */
-static PetscBool HasOneThread(char **argv)
-{
-  if (omp_get_max_threads() > 1 || getenv("PETSC_OPTIONS")) return PETSC_FALSE;
-  for (char **word = argv; *word; word++) {
-    if (strstr(*word, "threads") || strstr(*word, "options")) return PETSC_FALSE; /* a file of options may, too */
-  }
-  return PETSC_TRUE;
-}
-
-/* Threads that wait are to sleep, not to spin: on a busy machine spinning takes the cores from whoever works. The
-   OpenMP library reads this when it is loaded, so the program starts once more with it, unless the user has decided or
-   no thread will wait; where it cannot, it goes on as it is. Under its own path: as /proc/self/exe its name would be
-   exe to ps and pkill. */
-static void WaitPassively(char **argv)
-{
-  char path[PETSC_MAX_PATH_LEN];
-
-  if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT") || HasOneThread(argv)) return;
-  if (setenv("OMP_WAIT_POLICY", "passive", 0)) return;
-  const ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - 1);
-  if (length <= 0) return;
-  path[length] = '\0';
-  (void)execv(path, argv);
-}
-
 static int RefuseForMemory(int rank)
 {
   if (rank == 0) (void)fputs("equimap: out of memory at the very beginning\n", stderr);
   EqmForgetEnds();
   return EQM_STATUS_INTERNAL;
+}
+
+static void CrashForMemory(int number)
+{
+  (void)number;
+  _exit(RefuseForMemory(0));
 }
 
 int main(int argc, char **argv)
@@ -185,10 +156,10 @@ int main(int argc, char **argv)
 
   if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return RefuseForMemory(rank);
   if (line.version || !line.command) return EqmIntroduce(&line, rank);
-  WaitPassively(argv);
+  EqmStartAgain(&line, argv);
   EqmWatchExits(); /* HDF5 without memory exits */
-  if (!EqmH5Load()) return RefuseForMemory(rank);
-  if (!launched) StartWithoutDaemon();
+  if (!EqmLoadHdf5(CrashForMemory)) return RefuseForMemory(rank);
+  if (!launched) EqmStartWithoutDaemon();
   argc = num_options;
   argv = options;
   if (EqmInitialize(&argc, &argv)) return EQM_STATUS_INTERNAL;

@@ -110,7 +110,7 @@ void EqmWatchExits(void)
 
 PetscErrorCode EqmWatchEnds(void)
 {
-  static const int signals[] = {SIGSEGV, SIGBUS, SIGILL, SIGFPE};
+  static const int signals[] = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}; /* the last: a heap that is damaged */
   PetscBool without;
 
   PetscFunctionBegin;

@@ -2,7 +2,6 @@
 #include <equimap/base.h>
 #include "base/atomicfile.h"
 #include "base/fatal.h"
-#include "base/largepages.h"
 #include "base/stop.h"
 #include <signal.h>
 #include <string.h>
@@ -106,7 +105,6 @@ PetscErrorCode EqmInitialize(int *argc, char ***argv)
     return PETSC_ERR_MEM;
   }
   PetscCall(PetscInitialize(argc, argv, NULL, NULL));
-  PetscCall(EqmUseLargePages());
   EqmStopRemoveTemporaries();
   PetscCall(EqmWatchEnds());
   signal(SIGXFSZ, SIG_IGN); /* a file size limit is a write that fails, with a message, not a death */

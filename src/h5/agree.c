@@ -7,7 +7,7 @@ typedef struct {
   size_t length;
 } Cause;
 
-static PetscBool no_memory = PETSC_FALSE; /* an allocation of HDF5 has failed in this process */
+static PetscBool no_memory = PETSC_FALSE; /* an allocation of HDF5 has failed since a file was begun */
 
 static herr_t LookForMemory(unsigned n, const H5E_error2_t *entry, void *context)
 {
@@ -17,12 +17,28 @@ static herr_t LookForMemory(unsigned n, const H5E_error2_t *entry, void *context
   return 0;
 }
 
-/* EqmH5NoteFailure - called by HDF5 when a call fails, in place of its printing: what a later call that succeeds would
+/* Called by HDF5 when a call fails, in place of its printing: what a later call that succeeds would
    wipe out is noted. */
-herr_t EqmH5NoteFailure(hid_t stack, void *context)
+static herr_t NoteFailure(hid_t stack, void *context)
 {
   (void)H5Ewalk2(stack, H5E_WALK_UPWARD, LookForMemory, context);
   return 0;
+}
+
+/* EqmH5WatchMemory - a file is begun: HDF5 calls NoteFailure from now on, and prints nothing. Not collective. */
+void EqmH5WatchMemory(void)
+{
+  no_memory = PETSC_FALSE;
+  (void)H5Eset_auto2(H5E_DEFAULT, NoteFailure, NULL);
+}
+
+/* EqmH5CheckMemory - fails if an allocation of HDF5 has failed: what is then not found may well be there. Not
+   collective. Errors: PETSC_ERR_MEM. */
+PetscErrorCode EqmH5CheckMemory(EqmH5 h5)
+{
+  PetscFunctionBegin;
+  PetscCheck(!no_memory, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory: HDF5 cannot read '%s'", h5->name);
+  PetscFunctionReturn(0);
 }
 
 static herr_t TakeDescription(unsigned n, const H5E_error2_t *entry, void *context)

@@ -134,6 +134,7 @@ PetscErrorCode EqmH5HasDataset(EqmH5 h5, const char *path, PetscBool *has)
   dataset = H5Dopen2(h5->file, path, H5P_DEFAULT);
   *has = (PetscBool)(dataset >= 0);
   if (dataset >= 0) (void)H5Dclose(dataset);
+  PetscCall(EqmH5CheckMemory(h5));
   PetscFunctionReturn(0);
 }
 

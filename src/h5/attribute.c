@@ -114,6 +114,7 @@ PetscErrorCode EqmH5GetReal(EqmH5 h5, const char *name, PetscReal fallback, Pets
   PetscFunctionBegin;
   *value = fallback;
   Get(h5, name, H5T_NATIVE_DOUBLE, value);
+  PetscCall(EqmH5CheckMemory(h5));
   PetscFunctionReturn(0);
 }
 
@@ -123,6 +124,7 @@ PetscErrorCode EqmH5GetInteger(EqmH5 h5, const char *name, PetscInt64 fallback, 
   PetscFunctionBegin;
   *value = fallback;
   Get(h5, name, H5T_NATIVE_INT64, value);
+  PetscCall(EqmH5CheckMemory(h5));
   PetscFunctionReturn(0);
 }
 
@@ -158,8 +160,8 @@ PetscErrorCode EqmH5GetText(EqmH5 h5, const char *name, const char *fallback, ch
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(text, fallback, length));
-  if (H5Aexists(h5->file, name) <= 0) PetscFunctionReturn(0);
-  attribute = H5Aopen(h5->file, name, H5P_DEFAULT);
+  attribute = H5Aexists(h5->file, name) > 0 ? H5Aopen(h5->file, name, H5P_DEFAULT) : H5I_INVALID_HID;
+  PetscCall(EqmH5CheckMemory(h5));
   if (attribute < 0) PetscFunctionReturn(0);
   type = H5Aget_type(attribute);
   if (type >= 0 && H5Tget_class(type) == H5T_STRING) {
@@ -170,6 +172,7 @@ PetscErrorCode EqmH5GetText(EqmH5 h5, const char *name, const char *fallback, ch
   }
   if (type >= 0) (void)H5Tclose(type);
   (void)H5Aclose(attribute);
+  PetscCall(EqmH5CheckMemory(h5));
   PetscFunctionReturn(0);
 }
 
@@ -195,9 +198,11 @@ PetscErrorCode EqmH5GetChecksum(EqmH5 h5, const char *path, PetscInt64 *checksum
 
   PetscFunctionBegin;
   *checksum = -1;
-  if (dataset < 0) PetscFunctionReturn(0);
-  GetFrom(dataset, "crc32", H5T_NATIVE_INT64, checksum);
-  (void)H5Dclose(dataset);
+  if (dataset >= 0) {
+    GetFrom(dataset, "crc32", H5T_NATIVE_INT64, checksum);
+    (void)H5Dclose(dataset);
+  }
+  PetscCall(EqmH5CheckMemory(h5));
   PetscFunctionReturn(0);
 }
 

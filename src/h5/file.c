@@ -54,7 +54,7 @@ static PetscErrorCode Begin(MPI_Comm comm, const char *name, PetscBool writing, 
   PetscCallMPI(MPI_Comm_rank(comm, &h5->rank));
   PetscCall(PetscStrncpy(h5->name, name, sizeof(h5->name)));
   (void)H5Eget_auto2(H5E_DEFAULT, &h5->printer, &h5->printer_data);
-  (void)H5Eset_auto2(H5E_DEFAULT, EqmH5NoteFailure, NULL);
+  EqmH5WatchMemory();
   *out = h5;
   PetscFunctionReturn(0);
 }

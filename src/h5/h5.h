@@ -32,7 +32,8 @@ typedef struct {
   PetscInt width; /* entries per row; 0 makes the array one-dimensional */
 } EqmSlab;
 
-PETSC_INTERN herr_t EqmH5NoteFailure(hid_t stack, void *context);
+PETSC_INTERN void EqmH5WatchMemory(void);
+PETSC_INTERN PetscErrorCode EqmH5CheckMemory(EqmH5 h5);
 PETSC_INTERN PetscErrorCode EqmH5Create(MPI_Comm comm, const char *name, EqmH5 *h5);
 PETSC_INTERN PetscErrorCode EqmH5Open(MPI_Comm comm, const char *name, EqmH5 *h5);
 PETSC_INTERN PetscErrorCode EqmH5KeepPrevious(EqmH5 h5, const char *previous);

@@ -58,6 +58,7 @@ PetscErrorCode EqmH5ListNumbers(EqmH5 h5, const char *group, PetscInt *num, char
       (void)H5Gclose(object);
     }
   }
+  PetscCall(EqmH5CheckMemory(h5));
   *num = list.num;
   *names = list.names;
   PetscFunctionReturn(0);
