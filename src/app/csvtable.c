@@ -23,7 +23,7 @@ static void PrintTable(EqmAtomicFile *file, void *context)
 }
 
 PetscErrorCode EqmCsvTableWrite(MPI_Comm comm, const char *file, const char *header, PetscInt num, PetscInt count,
-                             const PetscReal *first, const PetscReal *second)
+                                const PetscReal *first, const PetscReal *second)
 {
   Table table = {.header = header, .num = num, .width = second ? 2 : 1};
   PetscReal *rows;

@@ -97,11 +97,11 @@ static PetscErrorCode Write(const MeasureOptions *options, Measured *m)
   PetscCall(EqmMapGetConformalFactor(m->map, &factor));
   if (options->cells[0]) {
     PetscCall(EqmCsvTableWrite(soup->comm, options->cells, quasi ? "cell,ratio,quasi_conformal" : "cell,ratio",
-                            soup->num_cells, soup->cell_end - soup->cell_start, per_cell, quasi));
+                               soup->num_cells, soup->cell_end - soup->cell_start, per_cell, quasi));
   }
   if (options->vertices[0]) {
     PetscCall(EqmCsvTableWrite(soup->comm, options->vertices, factor ? "vertex,ratio,conformal_factor" : "vertex,ratio",
-                            soup->num_vertices, soup->vertex_end - soup->vertex_start, per_vertex, factor));
+                               soup->num_vertices, soup->vertex_end - soup->vertex_start, per_vertex, factor));
   }
   PetscCall(EqmMapSetCost(m->map, m->ledger));
   if (options->output[0]) PetscCall(EqmMapWrite(m->map, options->output));

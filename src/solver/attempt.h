@@ -36,7 +36,6 @@ PETSC_INTERN PetscErrorCode EqmAttemptsEnd(EqmSolver solver, EqmAttempts *attemp
    iterations go on. With -restart, the map that its checkpoint has. Collective. */
 PETSC_INTERN PetscErrorCode EqmAttemptContinue(EqmSolver solver, EqmAttempts *attempts, EqmAttempt *before);
 
-
 /* ---- balance.c */
 /* Without -balance, the weight that -balance_energy begins with. Before the terms are made. Not collective. */
 PETSC_INTERN PetscErrorCode EqmBalanceBegin(EqmSolver solver);

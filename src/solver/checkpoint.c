@@ -162,8 +162,8 @@ PetscErrorCode EqmCheckpointStopRequested(EqmSolver solver, PetscBool *stop)
     PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by %s after iteration %" PetscInt_FMT,
                             EqmStopReasonName(reason), solver->iterate->number));
   } else if (set->wall_time > 0. && seconds + ReservedSeconds(solver) >= set->wall_time) {
-    PetscCall(
-        PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %.6g s", (double)set->wall_time));
+    PetscCall(PetscSNPrintf(solver->message, sizeof(solver->message), "stopped by -wall_time %.6g s",
+                            (double)set->wall_time));
   } else {
     *stop = PETSC_FALSE;
     PetscFunctionReturn(0);

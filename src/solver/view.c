@@ -7,7 +7,8 @@ static PetscErrorCode ViewResult(EqmSolver solver, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCall(PetscViewerASCIIPrintf(viewer, "linear solver: %s\n", solver->problem->linear_solver));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "after %" PetscInt_FMT " iterations: energy %.6g, %" PetscInt64_FMT " folds\n",
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "after %" PetscInt_FMT " iterations: energy %.6g, %" PetscInt64_FMT " folds\n",
                                    solver->iterate->number, (double)totals->energy, totals->folds));
   PetscCall(PetscViewerASCIIPrintf(viewer, "%s: %s\n", EqmStatusName(solver->status), solver->message));
   PetscFunctionReturn(0);
@@ -27,9 +28,11 @@ PetscErrorCode EqmSolverView(EqmSolver solver, PetscViewer viewer)
                                      solver->first_map ? "given"
                                      : solver->start   ? solver->start->name
                                                        : "not settled"));
-    PetscCall(PetscViewerASCIIPrintf(
-        viewer, "at most %" PetscInt_FMT " iterations; tolerances: energy %.6g per iteration, ratios %.6g, gradient %.6g\n",
-        set->max_it, (double)set->energy_rtol, (double)set->ratio_tol, (double)set->gradient_tol));
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "at most %" PetscInt_FMT
+                                     " iterations; tolerances: energy %.6g per iteration, ratios %.6g, gradient %.6g\n",
+                                     set->max_it, (double)set->energy_rtol, (double)set->ratio_tol,
+                                     (double)set->gradient_tol));
   } else {
     PetscCall(PetscViewerASCIIPrintf(viewer, "method: %s\n", set->method));
   }
