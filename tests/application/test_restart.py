@@ -153,7 +153,7 @@ def methods_of(program, command):
 
 
 def check_methods(program, all_of_them=False):
-    """Methods go on to the last bit: one of each kind, on one rank all of the disk; all of every command."""
+    """Methods go on to the last bit: some on two ranks, one of each kind on three, on one all of the disk; all of every command."""
     coarse = ("ball", "blob.msh", "lbfgs", "-linear_solver", "multigrid", "-lbfgs_refresh", 2)  # coarse spaces older than the metric
     some = (("disk", "hills.obj", "rgd"), ("disk", "hills.obj", "lm"), ("sphere", "head.obj", "lbfgs"), ("ball", "blob.msh", "newton"),
             ("ball", "blob.msh", "ncg"), coarse)
@@ -162,6 +162,8 @@ def check_methods(program, all_of_them=False):
               ("disk", "hills.obj", "lbfgs", "-lbfgs_refresh", 2, "-lbfgs_memory", 2), ("square", "patch.obj", "ncg", "-ncg_beta", "hager-zhang"),
               ("disk", "shared.h5", "cascade", "-energy_target", 1e-30)]
     every += [coarse] if all_of_them else [run for run in some if run[0] != "disk"]
+    if program.ranks == 2:
+        some = [some[1], some[3], coarse]
     for command, mesh, method, *options in every if program.ranks == 1 else some:
         run = (command, mesh, "-method", method, *options, *ENDLESS)
         start = program.run(*run, "-max_it", 0, "-checkpoint", "start.ck", *outputs("start"))

@@ -4,7 +4,7 @@
 #include "format_samples.h"
 #include "mutations.h"
 
-enum { MUTATIONS = 40, CUTS = 12 }; /* of each sample */
+enum { MUTATIONS = 20, CUTS = 6 }; /* of each sample */
 
 /* Samples that one rank reads alone, by their names' beginnings: arrays of text, several pieces, sets of texture
    coordinates of two kinds, numbers that do not keep to lines. */
