@@ -12,4 +12,6 @@ endforeach()
 target_compile_options(libequimap_sanitized PUBLIC ${flags})
 target_link_options(libequimap_sanitized PUBLIC ${flags})
 # Half of a compilation is PETSc's headers. The library itself is compiled without, so that a missing include is found.
+# Files that want GNU's functions would say so too late.
 target_precompile_headers(libequimap_sanitized PRIVATE <petscksp.h>)
+target_compile_definitions(libequimap_sanitized PRIVATE _GNU_SOURCE=)
