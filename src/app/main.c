@@ -131,17 +131,11 @@ static int RankOfLauncher(PetscBool *launched)
   return 0;
 }
 
-static int RefuseForMemory(int rank)
-{
-  if (rank == 0) (void)fputs("equimap: out of memory at the very beginning\n", stderr);
-  EqmForgetEnds();
-  return EQM_STATUS_INTERNAL;
-}
-
 static void CrashForMemory(int number)
 {
   (void)number;
-  _exit(RefuseForMemory(0));
+  EqmRefuseToBegin(0);
+  _exit(EQM_STATUS_INTERNAL);
 }
 
 int main(int argc, char **argv)
@@ -154,11 +148,17 @@ int main(int argc, char **argv)
   int num_options;
   char **options;
 
-  if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) return RefuseForMemory(rank);
+  if (EqmCommandLineParse(argc, argv, &line, &num_options, &options)) {
+    EqmRefuseToBegin(rank);
+    return EQM_STATUS_INTERNAL;
+  }
   if (line.version || !line.command) return EqmIntroduce(&line, rank);
   EqmStartAgain(&line, argv);
   EqmWatchExits(); /* HDF5 without memory exits */
-  if (!EqmLoadHdf5(CrashForMemory)) return RefuseForMemory(rank);
+  if (!EqmLoadHdf5(CrashForMemory)) {
+    EqmRefuseToBegin(rank);
+    return EQM_STATUS_INTERNAL;
+  }
   if (!launched) EqmStartWithoutDaemon();
   argc = num_options;
   argv = options;

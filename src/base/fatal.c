@@ -126,6 +126,12 @@ void EqmForgetEnds(void)
   is_running = PETSC_FALSE;
 }
 
+void EqmRefuseToBegin(int rank)
+{
+  if (rank == 0) (void)fputs("equimap: out of memory at the very beginning\n", stderr);
+  EqmForgetEnds();
+}
+
 /* OpenBLAS asks for its work space (128 MiB of addresses) at its first call, keeps it, and where it is refused asks
    again for ever. So it is asked for where a refusal can be told. */
 PetscErrorCode EqmReserveForBlas(void)

@@ -17,6 +17,10 @@ PETSC_INTERN PetscErrorCode EqmFailForMemory(MPI_Comm comm, PetscErrorCode code,
 /* End all ranks with exit code 1; temporary files are removed. Not collective. */
 PETSC_INTERN void EqmEndAllRanks(void) __attribute__((noreturn));
 
+/* Memory that is missing before there is a handler of errors: rank 0 says so; ends are watched no
+   more. Not collective. */
+PETSC_INTERN void EqmRefuseToBegin(int rank);
+
 /* From now until EqmForgetEnds an exit that a library calls ends all ranks so, with a sentence; MPI need not have
    begun. Not collective. */
 PETSC_INTERN void EqmWatchExits(void);

@@ -100,8 +100,7 @@ PetscErrorCode EqmInitialize(int *argc, char ***argv)
 {
   PetscFunctionBegin;
   if (PetscPushErrorHandler(HandleError, NULL)) { /* what fails from here on deserves a sentence, too */
-    (void)fputs("equimap: out of memory at the very beginning\n", stderr);
-    EqmForgetEnds();
+    EqmRefuseToBegin(0);
     return PETSC_ERR_MEM;
   }
   PetscCall(PetscInitialize(argc, argv, NULL, NULL));

@@ -19,6 +19,7 @@
 /* An XML document that goes into an atomic file; the first failure of libxml2 is kept. */
 typedef struct {
   xmlTextWriterPtr xml;
+  xmlOutputBufferPtr out;
   EqmAtomicFile *file;
   PetscBool failed;
 } Document;
@@ -230,20 +231,19 @@ static PetscErrorCode WriteDocument(Document *document, const EqmSerialMesh *mes
     for (PetscInt k = 0; k < fields[f].width && !fields[f].on_cells; ++k)
       EqmTry(ShapeArray(document, mesh, &fields[f], k));
   }
-  Note(document, xmlTextWriterEndDocument(document->xml));
+  Note(document, EqmXmlEndDocument(document->xml, document->out));
   return 0;
 }
 
 static PetscErrorCode WriteFile(EqmAtomicFile *file, const EqmSerialMesh *mesh, const EqmField *fields,
                                 PetscInt num_fields, char *error, size_t error_length)
 {
-  xmlOutputBufferPtr buffer;
-  Document document = {NULL, file, PETSC_FALSE};
+  Document document = {.file = file};
   PetscErrorCode code;
 
   EqmXmlQuiet();
-  buffer = xmlOutputBufferCreateIO(WriteToFile, NULL, file, NULL);
-  if (buffer) document.xml = xmlNewTextWriter(buffer);
+  document.out = xmlOutputBufferCreateIO(WriteToFile, NULL, file, NULL);
+  if (document.out) document.xml = xmlNewTextWriter(document.out);
   if (!document.xml) return PETSC_ERR_MEM;
   code = WriteDocument(&document, mesh, fields, num_fields);
   xmlFreeTextWriter(document.xml);

@@ -20,6 +20,15 @@ void EqmXmlQuiet(void)
   xmlSetGenericErrorFunc(NULL, Ignore);
 }
 
+/* EqmXmlEndDocument - close all elements and write what has been gathered; -1 where that fails. libxml2 keeps it a
+   secret when it has no memory to encode it, but its buffer has no contents from then on. Not collective. */
+int EqmXmlEndDocument(xmlTextWriterPtr xml, xmlOutputBufferPtr out)
+{
+  const int outcome = xmlTextWriterEndDocument(xml);
+
+  return out->conv && !xmlBufContent(out->conv) ? -1 : outcome;
+}
+
 /* Entities are a way to make a small file use all memory; no mesh needs them. The parser itself reports their
    declarations, whatever encoding the file has. A document type without declarations, as GIFTI files have it, is fine.
  */

@@ -3,6 +3,7 @@
 #define EQM_FORMAT_XML_H
 
 #include <libxml/tree.h>
+#include <libxml/xmlwriter.h>
 #include "input.h"
 #include "scalar.h"
 
@@ -14,6 +15,7 @@ typedef struct {
 } EqmXmlText;
 
 PETSC_INTERN void EqmXmlQuiet(void);
+PETSC_INTERN int EqmXmlEndDocument(xmlTextWriterPtr xml, xmlOutputBufferPtr out);
 PETSC_INTERN PetscErrorCode EqmXmlParse(EqmInput *in, const char *text, size_t length, xmlDocPtr *document);
 PETSC_INTERN xmlNodePtr EqmXmlChild(xmlNodePtr parent, const char *name);
 PETSC_INTERN xmlNodePtr EqmXmlNext(xmlNodePtr node, const char *name);

@@ -37,7 +37,8 @@ void EqmH5WatchMemory(void)
 PetscErrorCode EqmH5CheckMemory(EqmH5 h5)
 {
   PetscFunctionBegin;
-  PetscCheck(!no_memory, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory: HDF5 cannot read '%s'", h5->name);
+  PetscCheck(!no_memory, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory: HDF5 cannot %s '%s'",
+             h5->writing ? "write" : "read", h5->name);
   PetscFunctionReturn(0);
 }
 

@@ -149,7 +149,8 @@ static void Frames(Writer *writer, EqmMap map, PetscInt num_frames)
 
 static PetscBool Compose(EqmMap map, const char *result, Body body, PetscInt num_frames, xmlBufferPtr buffer)
 {
-  Writer writer = {xmlNewTextWriterMemory(buffer, 0), result, PETSC_TRUE};
+  const xmlOutputBufferPtr out = xmlOutputBufferCreateBuffer(buffer, NULL);
+  Writer writer = {out ? xmlNewTextWriter(out) : NULL, result, PETSC_TRUE};
 
   if (!writer.xml) return PETSC_FALSE;
   Note(&writer, xmlTextWriterSetIndent(writer.xml, 1));
@@ -158,7 +159,7 @@ static PetscBool Compose(EqmMap map, const char *result, Body body, PetscInt num
   Attribute(&writer, "Version", "3.0");
   Open(&writer, "Domain");
   body(&writer, map, num_frames);
-  Note(&writer, xmlTextWriterEndDocument(writer.xml));
+  Note(&writer, EqmXmlEndDocument(writer.xml, out));
   xmlFreeTextWriter(writer.xml);
   return writer.fine;
 }

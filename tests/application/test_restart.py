@@ -439,7 +439,7 @@ def main():
             return 0
         check_kills(program, program.ranks, 2 if program.ranks == 2 else 4, random.Random(program.ranks))
         checks = [check_methods, check_other_ranks, check_kept_mesh, check_stopping, check_register, check_attempts]
-        if program.ranks != 2:  # the whole; two ranks are in every run
+        if program.ranks != 2:  # two, which are in every run, would say what one says
             checks += [check_damage, check_foreign, check_finished, check_full_disk]
         for check in checks:
             begun = time.time()
